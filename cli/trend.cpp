@@ -72,7 +72,7 @@ base::Result<void> add(const TrendOptions& options, const daemon::TesterHistory&
   std::sort(files.begin(), files.end(),
             [&stem](const std::string& a, const std::string& b) { return stem(a) < stem(b); });
   std::vector<daemon::HistoryEvent> events;
-  const std::string latest = history.records().empty() ? "" : *history.records().rbegin();
+  const std::string latest = history.records().empty() ? "" : history.records().rbegin()->first;
   std::size_t older = 0;
   for (const std::string& file : files) {
     const auto facts = record::read_facts_apart(file);

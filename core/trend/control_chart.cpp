@@ -45,6 +45,7 @@ double ControlChart::score(double value) const {
 
 void ControlChart::settle() {
   for (const double value : waiting_) {
+    if (std::ssize(sorted_) == kLargestBaseline) break;
     sorted_.insert(std::upper_bound(sorted_.begin(), sorted_.end(), value), value);
     baseline_.add(value);
   }

@@ -41,6 +41,9 @@ inline constexpr std::int64_t kFewestForLimits = 20;
 /// Values from which on a shift of one standard deviation is told within 15 values on average, and values of
 /// an excursion wait outside the baseline. With fewer, waiting would make false alarms too frequent.
 inline constexpr std::int64_t kFullBaseline = 200;
+/// The baseline takes no further values: its mean is known to a hundredth of a standard deviation, a fiftieth
+/// of k.
+inline constexpr std::int64_t kLargestBaseline = 10'000;
 
 /// Average number of values until one arm passes h, for independent normal scores whose mean is
 /// `shift` standard deviations: Siegmund's approximation [Siegmund, Sequential Analysis, 1985;

@@ -55,10 +55,10 @@ daemon::TrendState Keeper::state() const {
 void Keeper::begin() {
   evaluate();
   std::vector<std::filesystem::path> files = io::own_records(parts_.folder);
-  const std::set<std::string>& known = history_->records();
+  const std::map<std::string, std::string>& known = history_->records();
   std::erase_if(files, [&known](const std::filesystem::path& file) {
     const std::string name = file.stem().string();
-    return known.contains(name) || (!known.empty() && name < *known.begin());
+    return known.contains(name) || (!known.empty() && name < known.begin()->first);
   });
   io::keep_last(files, kMostAdded);
   for (const std::filesystem::path& file : files) {
@@ -101,7 +101,7 @@ void Keeper::evaluate() {
     history_ = std::make_unique<daemon::TesterHistory>(parts_.folder);
   }
   for (const daemon::HistoryEvent& event : history_->events()) daemon::apply(event, book_, charts_);
-  history_->forget_events();
+  history_->forget();
   if (remarks && !remarks->empty() && left_out_.empty()) left_out_ = remarks->front();
   std::string trouble = !remarks ? remarks.error().message : !trouble_.empty() ? trouble_ : left_out_;
   daemon::TrendState state = daemon::trend_state(charts_);

@@ -67,7 +67,7 @@ class Keeper {
   void evaluate();
 
   Parts parts_;
-  /// Its events are dropped when charts_ has them: the file may hold years.
+  /// It forgets what charts_ has: the file may hold years.
   std::unique_ptr<daemon::TesterHistory> history_ = std::make_unique<daemon::TesterHistory>(parts_.folder);
   daemon::BatchJournal batches_{parts_.folder};
   daemon::BatchBook book_;

@@ -195,7 +195,7 @@ base::Result<std::vector<std::string>> TesterHistory::read_on() {
     }
     if (const auto* test = std::get_if<TestFinished>(&event->what)) {
       if (!uuids_.insert(test->uuid).second) return;
-      records_.insert(std::filesystem::path{test->values.file}.stem().string());
+      records_.insert_or_assign(std::filesystem::path{test->values.file}.stem().string(), test->uuid);
     } else if (const auto* named = std::get_if<ReferenceNamed>(&event->what)) {
       reference_ = named->sample;
     }
@@ -203,6 +203,14 @@ base::Result<std::vector<std::string>> TesterHistory::read_on() {
   });
   if (!read) return tl::unexpected(read.error());
   return remarks;
+}
+
+void TesterHistory::forget() {
+  events_.clear();
+  while (records_.size() > kRemembered) {
+    uuids_.erase(records_.begin()->second);
+    records_.erase(records_.begin());
+  }
 }
 
 trend::TesterCharts TesterHistory::charts(const BatchBook& book,

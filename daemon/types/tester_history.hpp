@@ -9,8 +9,10 @@
 ///     const trend::TesterCharts charts = history.charts(book);
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -91,11 +93,12 @@ class TesterHistory {
 
   /// In the order of the lines.
   [[nodiscard]] const std::vector<HistoryEvent>& events() const noexcept { return events_; }
-  /// Drops events() from memory; all else that was read stays known.
-  void forget_events() noexcept { events_.clear(); }
+  /// Drops from memory events(), and of has() and records() all but the latest kRemembered tests by name.
+  void forget();
+  static constexpr std::size_t kRemembered = 1000;
   [[nodiscard]] bool has(const std::string& uuid) const { return uuids_.contains(uuid); }
-  /// Names of records without folder and extension, which begin with the time.
-  [[nodiscard]] const std::set<std::string>& records() const noexcept { return records_; }
+  /// Names of records without folder and extension, which begin with the time, and their UUIDs.
+  [[nodiscard]] const std::map<std::string, std::string>& records() const noexcept { return records_; }
   [[nodiscard]] const std::string& reference() const noexcept { return reference_; }
 
   /// The charts of the tests that are complete and not void. \param reference  of the charts; absent: as the
@@ -107,7 +110,7 @@ class TesterHistory {
   LineJournal lines_;
   std::vector<HistoryEvent> events_;
   std::set<std::string, std::less<>> uuids_;
-  std::set<std::string> records_;
+  std::map<std::string, std::string> records_;
   std::string reference_;
 };
 

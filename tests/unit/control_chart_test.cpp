@@ -156,5 +156,20 @@ RC_GTEST_PROP(ControlChartProperty, DependsOnTheOrderOfTheValuesAlone, ()) {
   }
 }
 
+TEST(ControlChart, HasABaselineOfLimitedSize) {
+  std::mt19937_64 random{1};
+  std::normal_distribution<double> normal;
+  ControlChart chart;
+  for (std::int64_t k = 0; k < kLargestBaseline + 500; ++k) chart.add(normal(random));
+  const double mean = chart.mean();
+  // Values beyond the limit, far away though they are, do not move what they are compared with.
+  for (int k = 0; k < 500; ++k) {
+    chart.add(10.0);
+    chart.restart_arms();
+  }
+  EXPECT_EQ(chart.mean(), mean);
+  EXPECT_NEAR(mean, 0.0, 4.0 / std::sqrt(static_cast<double>(kLargestBaseline)));
+}
+
 }  // namespace
 }  // namespace stickslip::trend

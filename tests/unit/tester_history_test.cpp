@@ -136,6 +136,25 @@ TEST_F(TesterHistoryTest, RestartsOneChartOrAll) {
   EXPECT_EQ(noise_count(history), 0);
 }
 
+TEST_F(TesterHistoryTest, ForgetsAllButTheLatestTests) {
+  std::vector<HistoryEvent> events;
+  for (std::size_t k = 0; k < TesterHistory::kRemembered + 5; ++k) {
+    TestFinished test;
+    test.uuid = fmt::format("{:08}-0000-4000-8000-000000000000", k);
+    test.values.file = fmt::format("20261121T125252Z-{:05}.h5", k);
+    events.push_back({"t", test});
+  }
+  TesterHistory history{folder_};
+  ASSERT_TRUE(history.append(events));
+  ASSERT_TRUE(history.read_on());
+  EXPECT_THAT(history.events(), SizeIs(events.size()));
+  history.forget();
+  EXPECT_THAT(history.events(), IsEmpty());
+  EXPECT_THAT(history.records(), SizeIs(TesterHistory::kRemembered));
+  EXPECT_FALSE(history.has("00000004-0000-4000-8000-000000000000"));
+  EXPECT_TRUE(history.has("00000005-0000-4000-8000-000000000000"));
+}
+
 /// A keeper with the alarms that it told.
 class KeeperTest : public TesterHistoryTest {
  protected:
