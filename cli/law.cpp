@@ -129,6 +129,7 @@ std::string tests_table(const Shown& shown) {
          test.S ? fmt::format("{:.1f}", *test.stick_time_s * kMillisecondsPerSecond) : "",
          coefficient_text(test.S), residual_text(residual(shown.law.ageing, has_ageing(shown.law.law), i)),
          coefficient_text(test.K), residual_text(residual(shown.law.rate, has_rate(shown.law.law), i))});
+    if (i > 0 && number == shown.tests.measured[i - 1]) continue;
     files +=
         fmt::format("file of test {}: {}\n", number + 1, base::printable(shown.material.tests[number].file));
   }

@@ -97,10 +97,15 @@ base::Result<Material> read_material(std::string label, std::span<const std::str
     test.truth = std::move(record->end->truth);
     const analysis::SkippedCorrections skipped =
         analysis::skipped_from_text(record->header.process.kept).value_or(analysis::SkippedCorrections{});
-    material.measured.push_back({tester.pull_speed_m_per_s, std::move(record->end->results),
-                                 analysis::slip_sums(record->cycles, skipped.first_slip), test.sample.grade,
-                                 analysis::mean_stick_time_s(record->cycles, skipped.first_slip),
-                                 budget_facts_of(record->header)});
+    analysis::MeasuredTest measured{tester.pull_speed_m_per_s,
+                                    std::move(record->end->results),
+                                    analysis::slip_sums(record->cycles, skipped.first_slip),
+                                    test.sample.grade,
+                                    analysis::mean_stick_time_s(record->cycles, skipped.first_slip),
+                                    budget_facts_of(record->header)};
+    if (measured.results.Q.reason == analysis::kSpeedChanges)
+      measured.rests = analysis::group_by_rest(analysis::rested_slips(record->cycles), measured.results);
+    material.measured.push_back(std::move(measured));
     material.tests.push_back(std::move(test));
   }
   if (material.tests.empty() && !material.voided.empty()) {

@@ -14,6 +14,7 @@
 #include "core/analysis/pooled_slips.hpp"
 #include "core/analysis/quantities.hpp"
 #include "core/analysis/replicates.hpp"
+#include "core/analysis/rest_groups.hpp"
 #include "core/analysis/results.hpp"
 #include "core/analysis/uncertainty_budget.hpp"
 
@@ -38,6 +39,7 @@ struct MeasuredTest {
   std::string grade{};                   ///< Of the paper; empty if not stated.
   std::optional<double> stick_time_s{};  ///< mean_stick_time_s() of its cycles.
   BudgetFacts budget_facts{};
+  std::vector<RestGroup> rests{};  ///< group_by_rest() of its cycles; empty at one speed.
 };
 
 /// Reason why a test has no value of a quantity.

@@ -15,6 +15,8 @@
 #include "core/analysis/covariance_of_means.hpp"
 #include "core/analysis/cycle_features.hpp"
 #include "core/analysis/escape.hpp"
+#include "core/analysis/slip_guess.hpp"
+#include "core/analysis/slip_windows.hpp"
 #include "core/base/nan.hpp"
 #include "core/detect/regime_rule.hpp"
 #include "core/estimate/huber.hpp"
@@ -62,12 +64,24 @@ void take(const estimate::UniformFit& uniform, Fitted& fitted) {
   fitted.of_noise = fitted.covariance;
 }
 
-/// Slips that count in the means: not the first if there are others (unless it is kept), and none whose S − K
-/// its few scans — a gap, spikes, the end of the pull — leave more uncertain than the typical S − K itself is
-/// large.
+/// Whether the belt stood still between two slips.
+bool is_held_between(const model::BeltMotion& belt, const estimate::SlipWindow& before,
+                     const estimate::SlipWindow& after) {
+  const std::size_t pull = belt.pull_of(after.slip.onset_s);
+  return pull != belt.pull_of(before.slip.onset_s) && belt.held_from_s(pull);
+}
+
+/// Slips that count in the means: not the first and none after a hold if there are others (unless the first
+/// is kept), and none whose S − K its few scans — a gap, spikes, the end of the pull — leave more uncertain
+/// than the typical S − K itself is large.
 std::vector<estimate::SlipWindow> slips_that_count(const SlipEstimates& estimates) {
-  std::span<const estimate::SlipWindow> windows = estimates.windows;
-  if (!estimates.first_counts && windows.size() >= kEnoughToLeaveOutTheFirst) windows = windows.subspan(1);
+  const std::vector<estimate::SlipWindow>& all = estimates.windows;
+  std::vector<estimate::SlipWindow> windows;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool rested_longer = i == 0 || is_held_between(estimates.belt, all[i - 1], all[i]);
+    if (estimates.first_counts || !rested_longer) windows.push_back(all[i]);
+  }
+  if (all.size() < kEnoughToLeaveOutTheFirst || windows.empty()) windows = all;
   std::vector<double> sizes;
   for (const estimate::SlipWindow& window : windows) sizes.push_back(std::abs(window.slip.S - window.slip.K));
   const double typical = signal::median(sizes);
@@ -501,6 +515,12 @@ std::vector<detect::Cycle> cycle_table(const estimate::Trace& trace, std::span<c
   double last_capture_s = base::kNaN;
   for (std::size_t i = 0; i < slips.size(); ++i) {
     const detect::Fall& slip = slips[i];
+    const auto held_from_s =
+        begins_a_pull(trace, slips, i) ? trace.belt.held_from_s(pull_of(trace, slip)) : std::nullopt;
+    // The belt may have stopped during the slip before.
+    if (held_from_s)
+      last_capture_s =
+          std::max(*held_from_s, estimate::time_at(trace, trough_at(trace, slips[i - 1], fit.shared)));
     detect::Cycle cycle;
     cycle.number = static_cast<std::int64_t>(i);
     cycle.peak_time_s = estimate::time_at(trace, slip.peak_at);
@@ -514,7 +534,7 @@ std::vector<detect::Cycle> cycle_table(const estimate::Trace& trace, std::span<c
     cycle.onset_time_s = cycle.capture_time_s = cycle.stick_time_s = cycle.slip_time_s = base::kNaN;
     cycle.delta_mu = cycle.delta_mu_standard_error = cycle.slip_speed_ratio = base::kNaN;
     cycle.pull_speed_m_per_s = base::kNaN;
-    if (i == 0) cycle.flags |= detect::kCycleIsFirst;
+    if (i == 0 || held_from_s) cycle.flags |= detect::kCycleIsFirst;
     const bool captured = estimates.ends[i] == SlipEnd::kCaptured;
     if (captured) cycle.flags |= detect::kCycleCaptured;
     const bool begins_from_stick = i == 0 || estimates.window_of_slip[i] != estimates.window_of_slip[i - 1];

@@ -205,7 +205,10 @@ TestResults TestAnalysis::finish() {
   base::LongColumn<detect::Fall> slips = find_slips(trace, sigma, settings_.scratch_folder);
   break_at_gaps(trace, slips);
   read_speeds(trace);
-  if (!slips.empty()) follow_speed(trace, slips);
+  if (!slips.empty()) {
+    follow_speed(trace, slips);
+    follow_holds(trace, slips, sigma, results);
+  }
   results.cycle_count = Estimate::of(static_cast<double>(slips.size()));
   results.smallest_slip = Estimate::of(detect::SlipRule::kSignificantSigmas * sigma);
   const TraditionalCoefficients traditional =

@@ -108,6 +108,10 @@ class TestAnalysis {
   void read_speeds(const estimate::Trace& trace);
   /// The speed of the pull, as measured or else as planned, into the trace; forgets falls that are no slips.
   void follow_speed(estimate::Trace& trace, base::LongColumn<detect::Fall>& slips) const;
+  /// Where nothing tells that the speed changes: the holds that the force shows, into the trace and the
+  /// findings. \param sigma  noise of a scan.
+  void follow_holds(estimate::Trace& trace, base::LongColumn<detect::Fall>& slips, double sigma,
+                    TestResults& results) const;
   /// All scans with the noise of the whole test known; fills spikes_ and spike_coefficients_.
   [[nodiscard]] estimate::Trace despiked_trace();
   /// Scans that are clipped or frozen are no measurement: as those at a rail of the converter.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/analysis/belt_start.hpp"
+#include "core/analysis/holds.hpp"
 #include "core/analysis/measured_speed.hpp"
 #include "core/analysis/test_analysis.hpp"
 #include "core/signal/noise.hpp"
@@ -129,6 +130,21 @@ void TestAnalysis::follow_speed(estimate::Trace& trace, base::LongColumn<detect:
     trace.belt = *belt;
   }
   keep_pulled(trace, slips, settings_.scratch_folder);
+}
+
+void TestAnalysis::follow_holds(estimate::Trace& trace, base::LongColumn<detect::Fall>& slips, double sigma,
+                                TestResults& results) const {
+  const std::optional<double>& speed = settings_.tester.pull_speed_m_per_s;
+  if (measured_speed_ || settings_.tester.speed_course || settings_.method.speed_course) return;
+  const std::vector<Hold> holds = find_holds(trace, slips, sigma);
+  if (holds.empty()) return;
+  base::add(results.findings, holds_finding(holds, speed.has_value()));
+  if (!speed) return;
+  const double begin_s = std::as_const(trace.time_s)[0];
+  if (auto course = course_with_holds(*speed, begin_s, holds)) {
+    trace.belt = model::BeltMotion{*std::move(course), begin_s};
+    keep_pulled(trace, slips, settings_.scratch_folder);
+  }
 }
 
 }  // namespace stickslip::analysis

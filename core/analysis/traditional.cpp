@@ -15,11 +15,11 @@ namespace {
 /// So many scans at the beginning tell whether the trace begins under load; a spike among them does not.
 constexpr std::ptrdiff_t kFirstScans = 5;
 
-/// Mean of the usable scans in [first, end), without large sums.
+/// Mean of the usable scans in [first, end) but those during which the belt stood still, without large sums.
 double mean_of(const estimate::Trace& trace, std::size_t first, std::size_t end) {
   signal::RunningMean mean;
   for (std::size_t k = first; k < end; ++k) {
-    if (trace.usable[k] != 0) mean.add(trace.value[k]);
+    if (trace.usable[k] != 0 && trace.belt.relative(trace.time_s[k]) != 0.0) mean.add(trace.value[k]);
   }
   return mean.mean;
 }

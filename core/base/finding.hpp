@@ -44,6 +44,7 @@ enum class FindingCode : std::uint8_t {
   kHum,
   kCoarseSteps,
   kBeginsUnderLoad,
+  kHolds,
   kZeroOffset,
   kPullSpeed,
   kFastBelt,

@@ -15,7 +15,7 @@ enum CycleFlag : std::uint8_t {
   kCycleHasGap = 1U << 1U,       ///< Scans are missing inside.
   kCycleIsSaturated = 1U << 2U,  ///< The converter was at a rail inside.
   kCycleCaptured = 1U << 3U,     ///< The slip ended in sticking.
-  kCycleIsFirst = 1U << 4U,      ///< The first slip of the pull: often not representative.
+  kCycleIsFirst = 1U << 4U,      ///< The first slip of the pull, or after a hold: not representative.
 };
 
 /// A cycle, from one slip to the next. Times are seconds after scan 0 of the test's record: (scan index −

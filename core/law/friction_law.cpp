@@ -59,7 +59,7 @@ double place_of(std::span<const LawTest> tests, const Group& group, bool ageing)
 Dependence dependence_of(std::span<const LawTest> tests, std::optional<Value> LawTest::*value) {
   std::vector<double> places(tests.size());
   for (Group group : groups_of(tests)) {
-    std::erase_if(group, [&](std::size_t test) { return !(tests[test].*value); });
+    std::erase_if(group, [&](std::size_t test) { return !(tests[test].*value) || tests[test].held; });
     if (group.empty()) continue;
     const double place = place_of(tests, group, value == &LawTest::S);
     for (const std::size_t test : group) places[test] = place;
@@ -68,6 +68,7 @@ Dependence dependence_of(std::span<const LawTest> tests, std::optional<Value> La
   for (std::size_t i = 0; i < tests.size(); ++i) {
     const LawTest& test = tests[i];
     if (!(test.*value)) continue;
+    if (test.held) places[i] = std::log10(*test.stick_time_s);
     result.points.push_back(
         {places[i], (test.*value)->value, (test.*value)->error, (test.*value)->systematic});
     result.tests.push_back(i);
@@ -165,7 +166,7 @@ void judge(Dependence& own, bool chosen, const char* what, const char* what_matt
     own.reason = std::move(reason);
   };
   if (own.points.size() < kFewestTests) {
-    return cannot(fmt::format("{} test{} for {}, at least {} are needed", own.points.size(),
+    return cannot(fmt::format("{} value{} for {}, at least {} are needed", own.points.size(),
                               own.points.size() == 1 ? "" : "s", what, kFewestTests));
   }
   if (!own.line) return cannot(fmt::format("all tests for {} are at one speed", what));

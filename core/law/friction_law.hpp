@@ -17,7 +17,7 @@
 ///   tenth of S − K over a decade of speed.
 ///
 /// Tests whose speeds differ by at most 1 % have one speed: K is at their mean speed, S at their mean stick
-/// time.
+/// time. A slip after a hold counts with its own stick time, which the belt set.
 ///
 ///     const FrictionLaw found = find_law(tests);
 ///     found.told ? name(found.law) : "cannot be told";
@@ -42,12 +42,14 @@ struct Value {
   double systematic = 0.0;
 };
 
-/// One test. At least one of S, with the stick time, and K is there.
+/// One test at one speed, or the slips of one speed or of one hold in a test that changes its speed. At least
+/// one of S, with the stick time, and K is there.
 struct LawTest {
   double pull_speed_m_per_s = 0.0;     ///< > 0
   std::optional<double> stick_time_s;  ///< Of its slips, geometric mean; > 0; with S.
   std::optional<Value> S;
   std::optional<Value> K;
+  bool held = false;  ///< The belt stood still for the stick time, whatever its speed.
 };
 
 /// In the order of their scores.

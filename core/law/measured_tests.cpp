@@ -22,6 +22,7 @@ std::string refusal(const MeasuredTest& test) {
   for (const base::Finding& finding : test.results.findings) {
     if (finding.severity == base::Severity::kFault || finding.code == repeated) return finding.text;
   }
+  if (!test.rests.empty()) return {};
   if (test.results.Q.reason == analysis::kSpeedChanges)
     return std::string{analysis::kSpeedChanges} + ": S and K are means over many";
   if (!test.pull_speed_m_per_s || !(*test.pull_speed_m_per_s > 0.0)) return "the pull speed is not known";
@@ -38,6 +39,23 @@ std::optional<Value> value_of(const Estimate& estimate, analysis::Rung rung) {
     value.systematic = 0.0;
   }
   return value;
+}
+
+/// \param test  with rests.
+std::vector<LawTest> tests_of_rests(const MeasuredTest& test) {
+  const std::optional<Value> K = value_of(test.results.mu_k, test.results.rung);
+  std::vector<LawTest> tests;
+  for (const analysis::RestGroup& group : test.rests) {
+    LawTest own;
+    own.pull_speed_m_per_s = group.pull_speed_m_per_s;
+    own.stick_time_s = group.stick_time_s;
+    own.held = group.held;
+    // An error of K moves all S of the test together.
+    own.S = Value{group.K + group.delta_mu, group.delta_mu_error, std::hypot(K->error, K->systematic)};
+    if (!group.held) own.K = Value{group.K, std::max(group.K_error, K->error), K->systematic};
+    tests.push_back(own);
+  }
+  return tests;
 }
 
 void fill_errors(std::vector<LawTest>& tests, std::optional<Value> LawTest::*value) {
@@ -58,6 +76,13 @@ LawTests tests_for_law(std::span<const MeasuredTest> measured) {
     const analysis::TestResults& results = measured[i].results;
     if (std::string reason = refusal(measured[i]); !reason.empty()) {
       result.left_out.push_back({i, "S and K", std::move(reason)});
+      continue;
+    }
+    if (!measured[i].rests.empty()) {
+      for (const LawTest& rest : tests_of_rests(measured[i])) {
+        result.tests.push_back(rest);
+        result.measured.push_back(i);
+      }
       continue;
     }
     LawTest test;

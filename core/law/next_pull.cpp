@@ -19,7 +19,7 @@ double log_stick_length(std::span<const LawTest> tests) {
   double sum = 0.0;
   double count = 0.0;
   for (const LawTest& test : tests) {
-    if (!test.S) continue;
+    if (!test.S || test.held) continue;
     sum += std::log10(*test.stick_time_s * test.pull_speed_m_per_s);
     count += 1.0;
   }
@@ -50,7 +50,8 @@ std::optional<NextPull> best_pull(const Dependence& asked, bool ageing, std::spa
   const auto place = [&](double v) {
     for (std::size_t i = 0; i < asked.points.size(); ++i) {
       const double had = tests[asked.tests[i]].pull_speed_m_per_s;
-      if (std::abs(v - had) <= analysis::kSameSpeed * std::max(v, had)) return asked.points[i].x;
+      if (!tests[asked.tests[i]].held && std::abs(v - had) <= analysis::kSameSpeed * std::max(v, had))
+        return asked.points[i].x;
     }
     return ageing ? length - std::log10(v) : v;
   };

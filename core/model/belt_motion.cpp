@@ -49,6 +49,15 @@ double BeltMotion::pull_start_s(std::size_t pull) const noexcept {
   return plan_ && pull > 0 ? plan_->pulls()[pull].start_s + start_s_ : -kForEver;
 }
 
+std::optional<double> BeltMotion::held_from_s(std::size_t pull) const noexcept {
+  if (!plan_ || pull == 0) return std::nullopt;
+  const double stop_s = pull_end_s(pull - 1);
+  // A way of rounding is none: 1e-9 of the way at full speed.
+  constexpr double kNoWay = 1e-9;
+  const double rest_s = pull_start_s(pull) - stop_s;
+  return std::abs(way_s(stop_s, rest_s)) <= kNoWay * rest_s ? std::optional{stop_s} : std::nullopt;
+}
+
 const BeltMotion& constant_belt() noexcept {
   static const BeltMotion belt;
   return belt;

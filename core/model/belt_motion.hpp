@@ -73,6 +73,9 @@ class BeltMotion {
   [[nodiscard]] double pull_end_s(std::size_t pull) const noexcept;
   /// Start of a pull on the trace's time axis; −infinity for the first.
   [[nodiscard]] double pull_start_s(std::size_t pull) const noexcept;
+  /// When the belt stopped before a pull, if it stood still in between: the sled rested under load. Nullopt
+  /// for the first pull, and where the belt went back.
+  [[nodiscard]] std::optional<double> held_from_s(std::size_t pull) const noexcept;
 
  private:
   std::optional<PullSpeed> plan_;

@@ -110,6 +110,29 @@ class Law(unittest.TestCase):
         self.assertIn("same scans", reasons["copy.h5"])
         self.assertIn("the pull speed changes", reasons["ramp.h5"])
 
+    def test_one_sheet_with_holds_tells_beta(self):
+        """The scene's plan tells the holds of the record; the same scans as a table show them by themselves."""
+        planned = self.folder / "holds.h5"
+        self.assertEqual(run(CLI, "simulate", "slide-hold-slide", "-o", planned).returncode, 0)
+        table = self.folder / "holds.csv"
+        table.write_text("time (s),force (N)\n" + "".join(
+            f"{fields[0]},{fields[4]}\n" for fields in (line.split(",") for line in run(
+                CLI, "export", planned, "--csv").stdout.splitlines() if line[0].isdigit())))
+        shown = self.folder / "shown.h5"
+        done = run(CLI, "import", table, "--column", "force (N)", "--sled-mass", "2331 g", "--speed", "3 in/min",
+                   "-o", shown)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("the belt stood still 4 times, for 1 to 30 s", done.stdout + done.stderr)
+        for file in (planned, shown):
+            found = self.law(file)
+            self.assertEqual(found["leading_law"], "ageing")
+            beta = found["parameters"]["beta"]
+            self.assertLess(abs(beta["value"] - 0.02), 3 * beta["standard_error"])
+            self.assertLess(beta["standard_error"], 0.001)
+            rests = [test["stick_time"] for test in found["tests"]]
+            for rest, hold in zip(rests[1:], (1, 3, 10, 30)):
+                self.assertLess(abs(rest - hold), 0.12)  # With the rise after it.
+
     def test_the_picture_is_made_once(self):
         picture = self.folder / "law.svg"
         self.assertEqual(run(CLI, "law", *self.ageing, "--plot", picture).returncode, 0)

@@ -148,7 +148,7 @@ TEST(FrictionLaw, ThreeTestsAreTooFew) {
   const std::vector<LawTest> tests{test_at(1.5, 0.02, 0), test_at(3, 0.02, 0), test_at(12, 0.02, 0)};
   const FrictionLaw found = find_law(tests);
   EXPECT_FALSE(found.told);
-  EXPECT_EQ(found.ageing.reason, "3 tests for S on the stick time, at least 4 are needed");
+  EXPECT_EQ(found.ageing.reason, "3 values for S on the stick time, at least 4 are needed");
 }
 
 /// A test whose S is higher by chance also takes longer to reach it.
@@ -304,6 +304,50 @@ TEST(LawTests, TheCorrectionOfTurningPointsIsAnErrorOfEachTest) {
   const LawTests found = tests_for_law(std::vector{test});
   EXPECT_EQ(found.tests[0].S->error, 2e-3);
   EXPECT_EQ(found.tests[0].S->systematic, 0.0);
+}
+
+/// One sheet: slips at 3 in/min, and one slip after each of four holds.
+TEST(FrictionLaw, HoldsAtOneSpeedTellAgeing) {
+  std::vector<LawTest> tests{test_at(3.0, 0.02, 0.0)};
+  for (const double hold_s : {1.0, 3.0, 10.0, 30.0}) {
+    LawTest test;
+    test.pull_speed_m_per_s = 3.0 * kInPerMin;
+    test.stick_time_s = hold_s;
+    test.held = true;
+    test.S = Value{0.38 + 0.02 * std::log10(hold_s), 1e-3, 0.0};
+    tests.push_back(test);
+  }
+  const FrictionLaw found = find_law(tests);
+  EXPECT_EQ(found.ageing.verdict, Verdict::kYes);
+  EXPECT_NEAR(found.ageing.line->slope->value, 0.02, 1e-9);
+  EXPECT_EQ(found.law, Law::kAgeing);
+  EXPECT_FALSE(found.told);  // One speed tells nothing about K.
+  // A hold says nothing about how long a pull at another speed would let the sled rest.
+  const auto next = next_pull(found, tests, {0.1 * kInPerMin, 30.0 * kInPerMin}, std::nullopt);
+  ASSERT_TRUE(next);
+  EXPECT_FALSE(next->tells_ageing);
+}
+
+TEST(LawTests, ATestThatChangesItsSpeedCountsByItsRests) {
+  analysis::MeasuredTest test;
+  test.results.Q = analysis::Estimate::none(std::string{analysis::kSpeedChanges});
+  test.results.mu_k = analysis::Estimate::of(0.3, 3e-4);
+  test.results.mu_k.systematic_uncertainty = 4e-4;
+  const std::vector<analysis::MeasuredTest> ramp{test};
+  ASSERT_EQ(tests_for_law(ramp).left_out.size(), 1U);
+  test.rests = {{0.001, 0.1, 0.08, 1e-4, 0.30, 2e-4, false}, {0.001, 10.0, 0.12, 1e-3, 0.30, 2e-4, true}};
+  const LawTests found = tests_for_law(std::vector{test});
+  ASSERT_EQ(found.tests.size(), 2U);
+  EXPECT_EQ(found.measured, (std::vector<std::size_t>{0, 0}));
+  EXPECT_TRUE(found.left_out.empty());
+  EXPECT_NEAR(found.tests[0].S->value, 0.38, 1e-12);
+  EXPECT_NEAR(found.tests[0].K->error, 3e-4, 1e-12);
+  EXPECT_FALSE(found.tests[0].held);
+  EXPECT_TRUE(found.tests[1].held);
+  EXPECT_FALSE(found.tests[1].K);
+  EXPECT_NEAR(found.tests[1].S->value, 0.42, 1e-12);
+  EXPECT_NEAR(found.tests[1].S->error, 1e-3, 1e-12);
+  EXPECT_NEAR(found.tests[1].S->systematic, 5e-4, 1e-12);
 }
 
 }  // namespace

@@ -1,0 +1,65 @@
+/// \file
+/// Slips of a test whose belt changed its speed, grouped by how long the contact rested before them: what
+/// such a test says about the friction law.
+///
+///     for (const RestGroup& group : group_by_rest(rested_slips(cycles), results)) …
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/analysis/results.hpp"
+#include "core/detect/cycle.hpp"
+
+namespace stickslip::analysis {
+
+/// A slip that began from a stick of known duration, at a known pull speed.
+struct RestedSlip {
+  double pull_speed_m_per_s = 0.0;
+  double stick_time_s = 0.0;
+  double delta_mu = 0.0;
+  double delta_mu_error = 0.0;
+  double peak = 0.0;
+  double trough = 0.0;
+  bool held = false;  ///< The belt stood still before it.
+};
+
+struct RestGroup {
+  double pull_speed_m_per_s = 0.0;  ///< Mean.
+  double stick_time_s = 0.0;        ///< Geometric mean.
+  double delta_mu = 0.0;            ///< Mean.
+  /// Of that mean, without what all slips share (omega, gamma); of a single slip with the scatter of the
+  /// others.
+  double delta_mu_error = 0.0;
+  double K = 0.0;        ///< Mean of the slips at this speed that follow no hold.
+  double K_error = 0.0;  ///< Of that mean against those of other speeds.
+  bool held = false;     ///< A single slip after a hold.
+};
+
+/// \param cycles  of a test whose belt changed its speed: others do not know the speed of each slip.
+template <typename Cycles>
+[[nodiscard]] std::vector<RestedSlip> rested_slips(const Cycles& cycles) {
+  std::vector<RestedSlip> slips;
+  for (std::size_t i = 0; i < cycles.size(); ++i) {
+    const detect::Cycle& cycle = cycles[i];
+    if (!(cycle.pull_speed_m_per_s > 0.0) || !(cycle.stick_time_s > 0.0) || !std::isfinite(cycle.delta_mu) ||
+        !(cycle.delta_mu_standard_error > 0.0))
+      continue;
+    slips.push_back({cycle.pull_speed_m_per_s, cycle.stick_time_s, cycle.delta_mu,
+                     cycle.delta_mu_standard_error, cycle.peak, cycle.trough,
+                     (cycle.flags & detect::kCycleIsFirst) != 0});
+  }
+  return slips;
+}
+
+/// Each slip after a hold is a group of its own: it has its place on the paper and its time at rest. The
+/// others are grouped by their speed (within kSameSpeed); fewer than four at one speed make no group, as on a
+/// ramp. Slips after a hold at a speed without a group are left out. K of a speed is the test's K and by how
+/// much the middles of the falls at this speed lie off the mean of all. \param results  of the test. \return
+/// empty where they have no K or no damping.
+[[nodiscard]] std::vector<RestGroup> group_by_rest(std::span<const RestedSlip> slips,
+                                                   const TestResults& results);
+
+}  // namespace stickslip::analysis
