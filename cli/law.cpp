@@ -156,7 +156,8 @@ std::string next_text(const law::NextPull& next) {
   constexpr double kInPerMin_m_per_s = 0.0254 / 60.0;
   const double speed = next.pull_speed_m_per_s / kInPerMin_m_per_s;
   const double step = std::pow(10.0, std::floor(std::log10(speed)) + 1.0 - kDigits);
-  return fmt::format("next: a pull at {} would tell most about {}\n",
+  return fmt::format("next: {} at {} would tell most about {}\n",
+                     next.hold_s ? fmt::format("a hold of {:.3g} s", *next.hold_s) : "a pull",
                      base::speed_text(std::round(speed / step) * step * kInPerMin_m_per_s),
                      next.tells_ageing ? "S" : "K");
 }
@@ -233,6 +234,7 @@ Json json_of(const Shown& shown) {
   }
   if (shown.next) {
     json["next_pull"] = {{"pull_speed", shown.next->pull_speed_m_per_s},
+                         {"hold", io::or_null(shown.next->hold_s)},
                          {"tells", shown.next->tells_ageing ? "mu_s" : "mu_k"},
                          {"separation", io::or_null(shown.next->separation)}};
   }

@@ -41,17 +41,31 @@ std::optional<Value> value_of(const Estimate& estimate, analysis::Rung rung) {
   return value;
 }
 
+/// Error of S − K that all slips of a test share by omega, gamma and the stick rate, over S − K.
+double shared_part_of(const analysis::TestResults& results) {
+  const std::optional<double>& delta_mu = results.delta_mu.value;
+  return delta_mu && *delta_mu > 0.0 ? results.delta_mu.standard_error.value_or(0.0) / *delta_mu : 0.0;
+}
+
 /// \param test  with rests.
 std::vector<LawTest> tests_of_rests(const MeasuredTest& test) {
-  const std::optional<Value> K = value_of(test.results.mu_k, test.results.rung);
+  const analysis::TestResults& results = test.results;
+  const std::optional<Value> K = value_of(results.mu_k, results.rung);
+  const std::optional<Value> S = value_of(results.mu_s, results.rung);
+  const double shared = shared_part_of(results);
   std::vector<LawTest> tests;
   for (const analysis::RestGroup& group : test.rests) {
     LawTest own;
     own.pull_speed_m_per_s = group.pull_speed_m_per_s;
     own.stick_time_s = group.stick_time_s;
     own.held = group.held;
-    // An error of K moves all S of the test together.
-    own.S = Value{group.K + group.delta_mu, group.delta_mu_error, std::hypot(K->error, K->systematic)};
+    const double of_all = shared * group.delta_mu;
+    const double own_part = group.delta_mu_error * group.delta_mu_error - of_all * of_all;
+    own.S = Value{group.K + group.delta_mu, std::sqrt(std::max(own_part, kLeastError * kLeastError)), 0.0};
+    // The scans tell S, and an error of S - K is one of K the other way: it counts where S - K differs.
+    if (S)
+      own.S->systematic =
+          std::hypot(S->systematic, S->error + shared * std::abs(group.delta_mu - (S->value - K->value)));
     if (!group.held) own.K = Value{group.K, std::max(group.K_error, K->error), K->systematic};
     tests.push_back(own);
   }

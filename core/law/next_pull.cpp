@@ -69,6 +69,12 @@ std::optional<NextPull> best_pull(const Dependence& asked, bool ageing, std::spa
     best.separation = separation;
     best.pull_speed_m_per_s = v;
   }
+  const auto held = std::find_if(tests.begin(), tests.end(), [](const LawTest& test) { return test.held; });
+  if (ageing && held != tests.end()) {
+    points.back().x = std::log10(kLongestHold_s);
+    const double separation = asked.slope_that_matters / slope_error(points, variance);
+    if (separation > best.separation) best = {held->pull_speed_m_per_s, kLongestHold_s, true, separation};
+  }
   return best.separation > 0.0 ? std::optional{best} : std::nullopt;
 }
 

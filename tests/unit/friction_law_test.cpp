@@ -328,14 +328,34 @@ TEST(FrictionLaw, HoldsAtOneSpeedTellAgeing) {
   EXPECT_FALSE(next->tells_ageing);
 }
 
+TEST(FrictionLaw, AsksForALongerHoldWhereHoldsAreMade) {
+  std::vector<LawTest> tests{test_at(3.0, 0.0, 0.0)};
+  for (const double offset : {-1.0, 1.0, -1.0, 1.0}) {
+    LawTest test;
+    test.pull_speed_m_per_s = 3.0 * kInPerMin;
+    test.stick_time_s = 1.0 + 0.1 * offset;
+    test.held = true;
+    test.S = Value{0.36 + 0.02 * offset, 0.02, 0.0};
+    tests.push_back(test);
+  }
+  const auto next = next_pull(find_law(tests), tests, {1.0 * kInPerMin, 9.0 * kInPerMin}, std::nullopt);
+  ASSERT_TRUE(next);
+  EXPECT_TRUE(next->tells_ageing);
+  EXPECT_EQ(next->hold_s, kLongestHold_s);
+  EXPECT_NEAR(next->pull_speed_m_per_s, 3.0 * kInPerMin, 1e-12);
+}
+
 TEST(LawTests, ATestThatChangesItsSpeedCountsByItsRests) {
   analysis::MeasuredTest test;
   test.results.Q = analysis::Estimate::none(std::string{analysis::kSpeedChanges});
   test.results.mu_k = analysis::Estimate::of(0.3, 3e-4);
   test.results.mu_k.systematic_uncertainty = 4e-4;
+  test.results.mu_s = analysis::Estimate::of(0.38, 1e-4);
+  test.results.mu_s.systematic_uncertainty = 4e-4;
+  test.results.delta_mu = analysis::Estimate::of(0.08, 8e-4);  // 1 % that all slips share
   const std::vector<analysis::MeasuredTest> ramp{test};
   ASSERT_EQ(tests_for_law(ramp).left_out.size(), 1U);
-  test.rests = {{0.001, 0.1, 0.08, 1e-4, 0.30, 2e-4, false}, {0.001, 10.0, 0.12, 1e-3, 0.30, 2e-4, true}};
+  test.rests = {{0.001, 0.1, 0.08, 1e-4, 0.30, 2e-4, false}, {0.001, 10.0, 0.12, 2e-3, 0.30, 2e-4, true}};
   const LawTests found = tests_for_law(std::vector{test});
   ASSERT_EQ(found.tests.size(), 2U);
   EXPECT_EQ(found.measured, (std::vector<std::size_t>{0, 0}));
@@ -346,8 +366,11 @@ TEST(LawTests, ATestThatChangesItsSpeedCountsByItsRests) {
   EXPECT_TRUE(found.tests[1].held);
   EXPECT_FALSE(found.tests[1].K);
   EXPECT_NEAR(found.tests[1].S->value, 0.42, 1e-12);
-  EXPECT_NEAR(found.tests[1].S->error, 1e-3, 1e-12);
-  EXPECT_NEAR(found.tests[1].S->systematic, 5e-4, 1e-12);
+  // 2e-3 without the 1 % of 0.12; these count as far as S - K differs from that of the test, with the error
+  // of S.
+  EXPECT_NEAR(found.tests[1].S->error, 1.6e-3, 1e-12);
+  EXPECT_NEAR(found.tests[1].S->systematic, std::hypot(4e-4, 1e-4 + 0.01 * 0.04), 1e-12);
+  EXPECT_NEAR(found.tests[0].S->systematic, std::hypot(4e-4, 1e-4), 1e-12);
 }
 
 }  // namespace
