@@ -93,6 +93,13 @@ class TableReader {
     return column < fields.size() ? fields[column] : std::string_view{};
   }
 
+  /// Of the row in cells_. \param content  of its field in this column.
+  [[nodiscard]] Cell cell(std::size_t column, std::string_view content) const {
+    const bool is_read =
+        column < cells_.size() && (column >= dialect_.columns.size() || dialect_.numeric[column]);
+    return is_read ? cells_[column] : read_cell(content, dialect_.decimal);
+  }
+
   void strange(std::int64_t line, std::string what) {
     if (strange_rows_++ > 0) return;
     strange_line_ = line;
@@ -138,17 +145,21 @@ class TableReader {
       table_.notes.push_back(fmt::format("line {} left out: the heading or its units again", line));
       return {};
     }
+    dialect_.read_cells(fields, cells_);
     const std::string_view value_text = dialect_.content(value_column_, field(fields, value_column_));
-    const Cell value = read_cell(value_text, dialect_.decimal);
+    const Cell value = cell(value_column_, value_text);
     std::optional<TimeCell> time;
     std::string_view time_text;
+    bool no_time = false;
+    bool time_is_hole = false;
     if (time_column_) {
       time_text = trimmed(dialect_.content(*time_column_, field(fields, *time_column_)));
-      time = read_time_cell(time_text, dialect_.decimal);
+      const Cell number = cell(*time_column_, time_text);
+      time = read_time_cell(time_text, number, dialect_.decimal);
+      no_time = !time;
+      time_is_hole = no_time && number.kind != CellKind::kText;
     }
-    const bool no_time = time_column_ && !time;
-    const bool time_is_hole = no_time && read_cell(time_text, dialect_.decimal).kind != CellKind::kText;
-    if (value.kind == CellKind::kText || (no_time && !time_is_hole) || !dialect_.is_row(fields)) {
+    if (value.kind == CellKind::kText || (no_time && !time_is_hole) || !dialect_.is_row(cells_)) {
       const bool value_is_wrong = value.kind == CellKind::kText;
       strange(
           line,
@@ -182,10 +193,7 @@ class TableReader {
     note_label(fields);
     add(hole ? base::kNaN : value.value, time, line);
     // The last number of the line, which would be cut first.
-    const Cell last = fields.size() == value_column_ + 1
-                          ? value
-                          : read_cell(dialect_.content(fields.size() - 1, fields.back()), dialect_.decimal);
-    last_decimals_ = last.decimals;
+    last_decimals_ = cell(fields.size() - 1, dialect_.content(fields.size() - 1, fields.back())).decimals;
     last_fields_ = fields.size();
     if (file_rows_++ > 0) {
       most_decimals_ = std::max(most_decimals_, previous_decimals_);
@@ -281,6 +289,7 @@ class TableReader {
   std::int64_t strange_line_ = 0;
   std::string strange_what_;
   bool any_value_ = false;
+  std::vector<Cell> cells_;  ///< Of the row at hand.
   struct MarkPlace {
     std::int64_t line = 0;
     std::string text;
