@@ -44,8 +44,8 @@ struct Finalised {
 /// TEST.journal.damaged instead of removed. Its record holds all readable data, has the status incomplete or
 /// interrupted, and names what is missing.
 ///
-/// Run it in a process of its own: HDF5 has one global lock and its errors can be fatal. Starts no threads but
-/// those of `evaluate`.
+/// Run it in a process of its own: HDF5 has one global lock and its errors can be fatal. Only `evaluate` may
+/// start threads.
 /// \param evaluate  asked if the journal has no end, or its end knew more scans than are left; without it
 /// such a test
 ///                  gets no results, with the reason "interrupted" or "damaged". The status of a test without
