@@ -216,23 +216,32 @@ Result<std::string> make_records(const ImportOptions& options, const std::string
       return tl::unexpected(free.error());
   }
   bar.show("analysing");
-  for (traces::ImportedTest& test : tests) {
-    record::Record& record = test.record;
-    record.header.process.source_command = command_line;
-    Result<record::EndRecord> end = evaluation::analyse(record, test.scans, request->scratch_folder);
-    if (!end) return tl::unexpected(end.error());
-    for (base::Finding& finding : record.end->results.findings)
-      base::add(end->results.findings, std::move(finding));
+  const auto end_of = [&](const record::Record& record,
+                          const record::ScanSource& scans) -> Result<record::EndRecord> {
+    Result<record::EndRecord> end = evaluation::analyse(record, scans, request->scratch_folder);
+    if (!end) return end;
+    for (const base::Finding& finding : record.end->results.findings)
+      base::add(end->results.findings, finding);
     if (imported->is_own) end->spikes = record.spikes;
-    record::set_end(record, std::move(*end));
+    return end;
+  };
+  for (traces::ImportedTest& test : tests) {
+    test.record.header.process.source_command = command_line;
+    if (tests.size() == 1) break;  // It is analysed while its scans are written.
+    Result<record::EndRecord> end = end_of(test.record, test.scans);
+    if (!end) return tl::unexpected(end.error());
+    record::set_end(test.record, std::move(*end));
   }
-  bar.show("writing");
+  if (tests.size() > 1) bar.show("writing");
   for (std::size_t i = 0; i < tests.size(); ++i) {
-    const record::Record& record = tests[i].record;
+    record::Record& record = tests[i].record;
+    const record::ColumnScans& scans = tests[i].scans;
     const std::string output = output_of(options.output, i + 1, tests.size());
-    if (const Result<void> published = record::publish_record(record, tests[i].scans, output); !published) {
-      return tl::unexpected(published.error());
-    }
+    const Result<void> published =
+        tests.size() > 1 ? record::publish_record(record, scans, output)
+                         : record::publish_record(record, scans, output,
+                                                  [&, own = scans.view()] { return end_of(record, own); });
+    if (!published) return tl::unexpected(published.error());
     text += fmt::format("{}: {} scans", base::printable(output), tests[i].scans.size());
     std::int64_t missing = 0;
     for (const daq::Gap& gap : record.gaps) missing += gap.count;

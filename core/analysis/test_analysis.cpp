@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <future>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
@@ -142,6 +143,7 @@ void TestAnalysis::add(base::ScanIndex index, double coefficient, bool saturated
   indices_.push_back(index);
   coefficients_.push_back(coefficient);
   saturated_.push_back(saturated ? 1 : 0);
+  if (!settings_.live) return;
   if (const auto cycle = live_.add(coefficient, saturated)) keep_live(*cycle);
   if (const auto& fall = live_.fall_begun()) {
     const auto peak = static_cast<std::size_t>(fall->peak_scan);
@@ -156,7 +158,7 @@ void TestAnalysis::keep_live(const detect::LiveCycle& cycle) {
     kept.cycle.live_capture_evidence = cycle.evidence;
     kept.cycle.live_decision_time_s = cycle.decided_time_s;
   }
-  new_cycles_.push_back(kept.cycle);
+  if (settings_.live) new_cycles_.push_back(kept.cycle);
   live_cycles_.push_back(kept);
 }
 
@@ -166,7 +168,7 @@ void TestAnalysis::end_live() {
 
 void TestAnalysis::gap(base::ScanIndex first, std::int64_t count, bool estimated) {
   gaps_.push_back({first, count, estimated});
-  live_.gap(count);
+  if (settings_.live) live_.gap(count);
 }
 
 std::vector<detect::Cycle> TestAnalysis::take_new_cycles() {
@@ -182,7 +184,25 @@ std::vector<detect::FallBegun> TestAnalysis::take_new_falls() {
 }
 
 TestResults TestAnalysis::finish() {
-  end_live();
+  const auto detect_beside = [&](detect::EstimatorTier estimator, bool on_a_thread) {
+    detect::LiveSettings live = live_settings(settings_);
+    live.estimator = estimator;
+    // What has no thread, also where there is no room for one, runs when it is asked.
+    const auto policy = on_a_thread ? std::launch::async | std::launch::deferred : std::launch::deferred;
+    return std::async(policy, &TestAnalysis::detected, live, indices_.view(), coefficients_.view(),
+                      saturated_.view(), gaps_, settings_.scratch_folder);
+  };
+  std::future<base::LongColumn<detect::LiveCycle>> detection;
+  if (settings_.live) {
+    end_live();
+  } else {
+    detection = detect_beside(settings_.estimator, true);
+  }
+  const auto end_detection = [&] {
+    if (!detection.valid()) return;
+    const base::LongColumn<detect::LiveCycle> cycles = detection.get();
+    for (const detect::LiveCycle& cycle : cycles) keep_live(cycle);
+  };
   TestResults results;
   std::int64_t lost = 0;
   for (const Gap& gap : gaps_) lost += gap.count;
@@ -236,11 +256,13 @@ TestResults TestAnalysis::finish() {
     const bool is_fitted = fits_whole_test() && slack.count == 0;
     const std::string why_no_K = slack.count > 0 ? why_slack(slack.count, slips.size()) : "";
     const bool mostly_slack = 2 * slack.count > slips.size();
+    if (!fits_whole_test()) end_detection();
+    // Seen once more by turning points: a long test that is fitted nearly always asks for them.
+    auto turning_points = detect_beside(detect::EstimatorTier::kTurningPoints, !settings_.live && is_fitted);
     TestEstimates estimates =
         is_fitted ? estimate(trace, slips, sigma)
         : slack.count > 0
-            ? by_turning_points(trace, slips, cycles_by_turning_points(), why_no_K,
-                                mostly_slack ? Slack{} : slack)
+            ? by_turning_points(trace, slips, turning_points.get(), why_no_K, mostly_slack ? Slack{} : slack)
             : by_turning_points(
                   trace, slips, live_cycles_,
                   fmt::format(
@@ -251,7 +273,7 @@ TestResults TestAnalysis::finish() {
     } else if (!estimates.model_describes) {
       const std::string why = estimates.results.delta_mu.reason;
       const TestEstimates fitted = std::move(estimates);
-      estimates = by_turning_points(trace, slips, cycles_by_turning_points(), why);
+      estimates = by_turning_points(trace, slips, turning_points.get(), why);
       estimates.model_describes = false;
       estimates.misfit = fitted.misfit;
       add_distance_to_fits(fitted.cycles, estimates.results);
@@ -264,8 +286,7 @@ TestResults TestAnalysis::finish() {
     }
     if (fits_whole_test() && estimates.model_describes && estimates.misfit.is_significant() &&
         trace.belt.is_constant()) {
-      add_distance(by_turning_points(trace, slips, cycles_by_turning_points(), {}).results,
-                   estimates.results);
+      add_distance(by_turning_points(trace, slips, turning_points.get(), {}).results, estimates.results);
       if (estimates.misfit.is_certain())
         base::add(results.findings, misfit_finding(estimates.misfit, estimates.results));
     }
@@ -296,6 +317,7 @@ TestResults TestAnalysis::finish() {
     if (verdict.transition_slip) {
       results.transition_time = transition_time(trace, estimates, slips, *verdict.transition_slip);
     }
+    end_detection();
     keep_cycles(trace, estimates, slips, [&](const detect::Fall& slip) {
       return results.delta_mu.value && !slack.holds(trace, slip);
     });
@@ -391,17 +413,20 @@ TestEstimates TestAnalysis::by_turning_points(const estimate::Trace& trace,
   return estimates;
 }
 
-base::LongColumn<detect::LiveCycle> TestAnalysis::cycles_by_turning_points() const {
-  detect::LiveSettings settings = live_settings(settings_);
-  settings.estimator = detect::EstimatorTier::kTurningPoints;
+base::LongColumn<detect::LiveCycle> TestAnalysis::detected(const detect::LiveSettings& settings,
+                                                           const base::LongColumn<base::ScanIndex>& indices,
+                                                           const base::LongColumn<double>& coefficients,
+                                                           const base::LongColumn<std::uint8_t>& saturated,
+                                                           const std::vector<Gap>& gaps,
+                                                           const std::filesystem::path& scratch) {
   detect::LiveDetector detector{settings};
-  base::LongColumn<detect::LiveCycle> cycles{settings_.scratch_folder};
-  auto gap = gaps_.begin();
-  for (std::size_t k = 0; k < indices_.size(); ++k) {
-    for (; gap != gaps_.end() && gap->first <= indices_[k]; ++gap) detector.gap(gap->count);
-    if (const auto cycle = detector.add(coefficients_[k], saturated_[k] != 0)) cycles.push_back(*cycle);
+  base::LongColumn<detect::LiveCycle> cycles{scratch};
+  auto gap = gaps.begin();
+  for (std::size_t k = 0; k < indices.size(); ++k) {
+    for (; gap != gaps.end() && gap->first <= indices[k]; ++gap) detector.gap(gap->count);
+    if (const auto cycle = detector.add(coefficients[k], saturated[k] != 0)) cycles.push_back(*cycle);
   }
-  for (; gap != gaps_.end(); ++gap) detector.gap(gap->count);
+  for (; gap != gaps.end(); ++gap) detector.gap(gap->count);
   if (const auto cycle = detector.end()) cycles.push_back(*cycle);
   return cycles;
 }

@@ -49,6 +49,9 @@ struct AnalysisSettings {
   /// Folder for a scratch file that holds the scans of a long test except the latest few minutes; empty: all
   /// in memory.
   std::filesystem::path scratch_folder;
+  /// Whether add() detects slips. If not, finish() does, on a thread of its own beside the fits: for scans
+  /// that are all there already.
+  bool live = true;
   /// One A/D step of the measured pull speed, ≥ 0; nullopt: no speed channel, speed() is not called.
   std::optional<double> speed_step_m_per_s;
 };
@@ -69,6 +72,8 @@ class TestAnalysis {
   /// Scans [first, first + count) are missing.
   /// \param estimated  the count comes from a clock.
   void gap(base::ScanIndex first, std::int64_t count, bool estimated = false);
+
+  // The next four functions need settings.live.
 
   /// Cycles completed since the last call, as the detector sees them live; finish() refines them. A cycle is
   /// complete when the next slip is seen, or the oscillation has died away.
@@ -143,8 +148,11 @@ class TestAnalysis {
                                                 const base::LongColumn<detect::Fall>& slips,
                                                 const base::LongColumn<detect::LiveCycle>& cycles,
                                                 std::string reason, const Slack& slack = {}) const;
-  /// The cycles of all scans, seen once more by turning points.
-  [[nodiscard]] base::LongColumn<detect::LiveCycle> cycles_by_turning_points() const;
+  /// The cycles of scans as add() sees them. May run in another thread than the one that calls this class.
+  [[nodiscard]] static base::LongColumn<detect::LiveCycle> detected(
+      const detect::LiveSettings& settings, const base::LongColumn<base::ScanIndex>& indices,
+      const base::LongColumn<double>& coefficients, const base::LongColumn<std::uint8_t>& saturated,
+      const std::vector<Gap>& gaps, const std::filesystem::path& scratch);
   [[nodiscard]] bool fits_whole_test() const noexcept {
     return settings_.estimator == detect::EstimatorTier::kFit;
   }

@@ -28,8 +28,8 @@
 
 namespace stickslip::base {
 
-/// Thread-bound, also where it is const. Where there is a folder, growing and reading may throw
-/// std::system_error, and elements can be read but not changed.
+/// Thread-bound, also where it is const; view() is for another thread. Where there is a folder, growing and
+/// reading may throw std::system_error, and elements can be read but not changed.
 template <typename T>
 class LongColumn {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -89,6 +89,19 @@ class LongColumn {
     size_ = size;
   }
   void pop_back() { truncate(size_ - 1); }
+  /// The same elements, to be read in another thread while this column is read here. Neither may change.
+  [[nodiscard]] LongColumn view() const {
+    LongColumn view{folder_};
+    view.size_ = size_;
+    view.blocks_ = blocks_;
+    view.file_ = file_;
+    if (file_ && !blocks_.empty()) {
+      // Buffers of blocks that lie in the file are used again; each thread has its own.
+      std::fill(view.blocks_.begin(), view.blocks_.end() - 1, nullptr);
+      view.resident_ = {blocks_.size() - 1};
+    }
+    return view;
+  }
   void clear() { *this = LongColumn{}; }
   void assign(std::size_t count, T value) {
     clear();
@@ -119,7 +132,7 @@ class LongColumn {
   }
 
  private:
-  using Buffer = std::unique_ptr<T[]>;  // NOLINT(modernize-avoid-c-arrays)
+  using Buffer = std::shared_ptr<T[]>;  // NOLINT(modernize-avoid-c-arrays)
   static constexpr std::size_t kBlockBytes = kBlock * sizeof(T);
 
   void add_block() {
@@ -127,7 +140,7 @@ class LongColumn {
     if (file_) {
       if (!blocks_.empty()) store(*file_, blocks_.size() - 1);
     } else if (!folder_.empty() && blocks_.size() == kResident) {
-      auto file = std::make_unique<ScratchFile>(folder_);
+      auto file = std::make_shared<ScratchFile>(folder_);
       for (std::size_t block = 0; block < blocks_.size(); ++block) store(*file, block);
       file_ = std::move(file);
     }
@@ -150,7 +163,7 @@ class LongColumn {
 
   /// A new one, or that of the block fetched longest ago. \param last  the block that is not in the file.
   [[nodiscard]] Buffer free_buffer(std::size_t last) const {
-    if (!file_ || resident_.size() < kResident) return std::make_unique_for_overwrite<T[]>(kBlock);
+    if (!file_ || resident_.size() < kResident) return std::make_shared_for_overwrite<T[]>(kBlock);
     const auto oldest =
         std::find_if(resident_.begin(), resident_.end(), [&](std::size_t block) { return block != last; });
     Buffer buffer = std::move(blocks_[*oldest]);
@@ -162,7 +175,7 @@ class LongColumn {
   mutable std::vector<Buffer> blocks_;
   mutable std::vector<std::size_t> resident_;  ///< Blocks in memory, the latest last; only with a folder.
   std::filesystem::path folder_;               ///< Of the file; empty: all in memory.
-  std::unique_ptr<ScratchFile> file_;
+  std::shared_ptr<ScratchFile> file_;
 };
 
 /// Iterator; reads by value, since the element may move to the file at the next access.

@@ -76,6 +76,7 @@ base::Result<RecordAnalysis> RecordAnalysis::make(const record::RecordHeader& he
                                  header.tester.tester().normal_load_N()};
     analysis::AnalysisSettings settings = settings_of(header, calibration, *method, *estimator, *skipped);
     settings.scratch_folder = scratch_folder;
+    settings.live = false;
     settings.prior = prior.empty() ? recorded : prior;
     std::optional<daq::SecondChannel> speed;
     if (const auto& second = header.board.second;
@@ -124,9 +125,6 @@ void RecordAnalysis::add(daq::ScanIndex first, std::span<const double> raw,
     analysis_.add(first++, calibration_.coefficient(raw[i]), saturated);
   }
   next_ = first;
-  // Nobody looks on: the final ones come with the results.
-  static_cast<void>(analysis_.take_new_cycles());
-  static_cast<void>(analysis_.take_new_falls());
 }
 
 void RecordAnalysis::finish(record::EndRecord& end, std::span<const daq::ClockAnchor> anchors,

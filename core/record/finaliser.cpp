@@ -5,6 +5,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <exception>
+#include <future>
+#include <utility>
 
 #include "core/base/contract.hpp"
 #include "core/record/file.hpp"
@@ -37,9 +40,12 @@ void write_numbers(hid_t file, hid_t entry) {
   });
 }
 
+/// Sets the rest of record.end; throws if there is none.
+using TakeEnd = std::function<void()>;
+
 /// \throws HdfError with the file in an unknown state: it is to be thrown away.
-void build(const Record& record, const ScanSource& scans, const std::filesystem::path& path,
-           const FileCalls& calls) {
+void build(const Record& record, const ScanSource& scans, const TakeEnd& take_end,
+           const std::filesystem::path& path, const FileCalls& calls) {
   FileHandle file = create_file(path, calls);
   write_attribute(file.get(), "NX_class", "NXroot");
   write_attribute(file.get(), "default", "entry");
@@ -51,7 +57,7 @@ void build(const Record& record, const ScanSource& scans, const std::filesystem:
     const GroupHandle entry = make_group(file.get(), "entry", "NXentry");
     write_attribute(entry.get(), "default", "raw");
     write_identity(entry.get(), record, scans);
-    const std::string sha256 = write_raw(entry.get(), record, scans);
+    const std::string sha256 = write_raw(entry.get(), record, scans, take_end);
     write_results(entry.get(), record.end->results);
     write_tables(entry.get(), record);
     write_instrument(entry.get(), record);
@@ -64,10 +70,10 @@ void build(const Record& record, const ScanSource& scans, const std::filesystem:
   finish_file(std::move(file));
 }
 
-base::Result<void> build_verified(const Record& record, const ScanSource& scans,
+base::Result<void> build_verified(const Record& record, const ScanSource& scans, const TakeEnd& take_end,
                                   const std::filesystem::path& part, const FileCalls& calls) {
   try {
-    build(record, scans, part, calls);
+    build(record, scans, take_end, part, calls);
   } catch (const std::exception& error) {
     return base::failure("{}: cannot be written: {}", part.string(), error.what());
   }
@@ -159,13 +165,14 @@ base::Result<std::filesystem::path> set_aside(const std::filesystem::path& journ
   return damaged;
 }
 
-base::Result<void> publish(const Record& record, const ScanSource& scans, const std::filesystem::path& path,
-                           const FileCalls& calls) {
+base::Result<void> publish(
+    const Record& record, const ScanSource& scans, const std::filesystem::path& path, const FileCalls& calls,
+    const TakeEnd& take_end = [] {}) {
   STICKSLIP_EXPECTS(record.end);
   STICKSLIP_EXPECTS(record.header.board.quantity != daq::RawQuantity::kCounts || record.header.load_cell);
   if (auto is_new = check_new(path); !is_new) return is_new;
   const auto part = with_suffix(path, ".part");
-  auto published = build_verified(record, scans, part, calls);
+  auto published = build_verified(record, scans, take_end, part, calls);
   if (published) published = rename_to_new(part, path, calls);
   if (!published) calls.unlink(part.c_str());
   return published;
@@ -200,6 +207,27 @@ base::Result<void> publish_record(const Record& record, const std::filesystem::p
 base::Result<void> publish_record(const Record& record, const ScanSource& scans,
                                   const std::filesystem::path& path) {
   return publish(record, scans, path, system_calls());
+}
+
+base::Result<void> publish_record(Record& record, const ScanSource& scans, const std::filesystem::path& path,
+                                  const std::function<base::Result<EndRecord>()>& evaluate) {
+  base::Result<EndRecord> end;
+  std::exception_ptr thrown;
+  // Without room for a thread it runs when it is asked.
+  std::future<base::Result<EndRecord>> evaluation = std::async(evaluate);
+  const auto take_end = [&] {
+    try {
+      end = evaluation.get();
+    } catch (...) {
+      thrown = std::current_exception();
+    }
+    if (thrown || !end) throw HdfError("there are no results");
+    set_end(record, *std::move(end));
+  };
+  auto published = publish(record, scans, path, system_calls(), take_end);
+  if (thrown) std::rethrow_exception(thrown);
+  if (!end) return tl::unexpected(end.error());
+  return published;
 }
 
 base::Result<void> publish_journal(const std::filesystem::path& journal, const Record& record,

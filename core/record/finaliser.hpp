@@ -44,7 +44,8 @@ struct Finalised {
 /// TEST.journal.damaged instead of removed. Its record holds all readable data, has the status incomplete or
 /// interrupted, and names what is missing.
 ///
-/// Run it in a process of its own: HDF5 has one global lock and its errors can be fatal. Starts no threads.
+/// Run it in a process of its own: HDF5 has one global lock and its errors can be fatal. Only `evaluate` may
+/// start threads.
 /// \param evaluate  asked if the journal has no end, or its end knew more scans than are left; without it
 /// such a test
 ///                  gets no results, with the reason "interrupted" or "damaged". The status of a test without
@@ -70,6 +71,14 @@ struct Finalised {
 /// \param record  everything except the scans.
 [[nodiscard]] base::Result<void> publish_record(const Record& record, const ScanSource& scans,
                                                 const std::filesystem::path& path);
+
+/// The same, with an end that is computed in another thread while the scans are written. Returns its error
+/// and throws what it throws, without a file. \param record  everything except the scans; its end tells when
+/// the test ended, and is replaced by set_end(). \param evaluate  must not use HDF5, nor `scans`: see
+/// ColumnScans::view().
+[[nodiscard]] base::Result<void> publish_record(Record& record, const ScanSource& scans,
+                                                const std::filesystem::path& path,
+                                                const std::function<base::Result<EndRecord>()>& evaluate);
 
 /// As publish_record(), but the scans come piece by piece from the journal, which stays where it is.
 /// \param record  everything except the scans.

@@ -3,6 +3,7 @@
 /// docs/record-file.md. All functions throw HdfError.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -30,8 +31,12 @@ void read_identity(hid_t entry, Record& record);
 /// be computed: voltage without a load cell, coefficient without a sled mass.
 [[nodiscard]] std::optional<daq::Calibration> force_column(const RecordHeader& header);
 
+/// \param take_end  called once the scans are written and before their flags are: record.spikes need not be
+/// known
+///        earlier.
 /// \return SHA-256 of the raw values as the file stores them (u16, u32 or f64, little-endian), hexadecimal.
-[[nodiscard]] std::string write_raw(hid_t entry, const Record& record, const ScanSource& scans);
+[[nodiscard]] std::string write_raw(hid_t entry, const Record& record, const ScanSource& scans,
+                                    const std::function<void()>& take_end);
 void read_raw(hid_t entry, Record& record);
 /// The part of read_raw() about the board, without the scans.
 void read_quantity(hid_t entry, daq::BoardInfo& board);

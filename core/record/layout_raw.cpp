@@ -65,7 +65,7 @@ class ValueWriter {
 /// Columns before and after the values are the same for every board.
 template <typename Stored>
 std::string write_columns(TableWriter& table, const Record& record, const ScanSource& scans,
-                          const FieldName& value_name) {
+                          const std::function<void()>& take_end, const FieldName& value_name) {
   const daq::BoardInfo& board = record.header.board;
   const bool counts = board.quantity == daq::RawQuantity::kCounts;
   const std::size_t size = scans.size();
@@ -84,7 +84,6 @@ std::string write_columns(TableWriter& table, const Record& record, const ScanSo
   write_attribute(flag_column.dataset().get(), "meaning", kFlagMeaning);
 
   ValueWriter<Stored> values{std::move(value_column)};
-  Flags flags{record};
   std::optional<daq::ScanIndex> first;
   scans.for_each_piece([&](const ScanPiece& piece) {
     if (!first) first = piece.scan.front();
@@ -100,8 +99,10 @@ std::string write_columns(TableWriter& table, const Record& record, const ScanSo
       for (const double raw : piece.raw) force_N.push_back(static_cast<float>(calibration->force_N(raw)));
       forces->append(force_N);
     }
-    flag_column.append(flags.of(piece));
   });
+  take_end();
+  Flags flags{record};
+  scans.for_each_piece([&](const ScanPiece& piece) { flag_column.append(flags.of(piece)); });
   return values.sha256();
 }
 
@@ -154,7 +155,8 @@ std::optional<daq::Calibration> force_column(const RecordHeader& header) {
   return std::nullopt;
 }
 
-std::string write_raw(hid_t entry, const Record& record, const ScanSource& scans) {
+std::string write_raw(hid_t entry, const Record& record, const ScanSource& scans,
+                      const std::function<void()>& take_end) {
   const daq::BoardInfo& board = record.header.board;
   const bool counts = board.quantity == daq::RawQuantity::kCounts;
   const QuantityName quantity = name(board.quantity);
@@ -164,11 +166,12 @@ std::string write_raw(hid_t entry, const Record& record, const ScanSource& scans
   write_attribute(table.group(), "axes", std::vector<std::string>{"time"});
   if (counts) {
     const FieldName column{"counts", "1", "A/D code [1]"};
-    return counts_fit_u16(board) ? write_columns<std::uint16_t>(table, record, scans, column)
-                                 : write_columns<std::uint32_t>(table, record, scans, column);
+    return counts_fit_u16(board) ? write_columns<std::uint16_t>(table, record, scans, take_end, column)
+                                 : write_columns<std::uint32_t>(table, record, scans, take_end, column);
   }
   const std::string long_name = fmt::format("{} [{}]", quantity.name, quantity.unit);
-  return write_columns<double>(table, record, scans, FieldName{quantity.name, quantity.unit, long_name});
+  return write_columns<double>(table, record, scans, take_end,
+                               FieldName{quantity.name, quantity.unit, long_name});
 }
 
 std::string sha256_of_raw(const Record& record) {

@@ -70,6 +70,15 @@ struct ScanColumns {
   explicit ScanColumns(const std::filesystem::path& folder = {})
       : scan(folder), raw(folder), second(folder) {}
 
+  /// As base::LongColumn::view().
+  [[nodiscard]] ScanColumns view() const {
+    ScanColumns view;
+    view.scan = scan.view();
+    view.raw = raw.view();
+    view.second = second.view();
+    return view;
+  }
+
   base::LongColumn<base::ScanIndex> scan;
   base::LongColumn<double> raw;
   base::LongColumn<std::int32_t> second;
@@ -79,6 +88,11 @@ struct ScanColumns {
 class ColumnScans final : public ScanSource {
  public:
   ColumnScans(std::shared_ptr<const ScanColumns> columns, std::size_t first, std::size_t count);
+
+  /// The same scans, to be read in another thread while these are read here.
+  [[nodiscard]] ColumnScans view() const {
+    return {std::make_shared<const ScanColumns>(columns_->view()), first_, count_};
+  }
 
   [[nodiscard]] std::size_t size() const override { return count_; }
   [[nodiscard]] std::int64_t extent() const override;

@@ -90,34 +90,29 @@ double step_seen(const base::LongColumn<double>& values) {
   return static_cast<double>(equal) >= kFewestEqual * static_cast<double>(values.size()) ? step : 0.0;
 }
 
+/// Scans of a band below the largest value.
 struct Tops {
   HeldValues held;
   double followed = 0.0;  ///< Scans at the top with another one behind them.
   double judged = 0.0;    ///< Scans at the top that have a usable one behind them.
-};
+  std::size_t run = 0;    ///< Latest scans at the top.
 
-Tops tops_of(const base::LongColumn<double>& values, const LeftOut& left_out, double lowest, double highest) {
-  Tops tops;
-  tops.held.lowest = lowest;
-  tops.held.highest = highest;
-  std::size_t run = 0;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    const bool at_top = !left_out(k) && tops.held.holds(values[k]);
-    if (run > 0 && !left_out(k)) ++tops.judged;
+  void add(std::size_t scan, double value, bool usable) {
+    const bool at_top = usable && held.holds(value);
+    if (run > 0 && usable) ++judged;
     if (!at_top) {
       run = 0;
-      continue;
+      return;
     }
-    if (run > 0) ++tops.followed;
-    tops.held.run_count += run == 0 ? 1 : 0;
-    ++tops.held.scan_count;
-    if (++run > tops.held.longest) {
-      tops.held.longest = run;
-      tops.held.first = k + 1 - run;
+    if (run > 0) ++followed;
+    held.run_count += run == 0 ? 1 : 0;
+    ++held.scan_count;
+    if (++run > held.longest) {
+      held.longest = run;
+      held.first = scan + 1 - run;
     }
   }
-  return tops;
-}
+};
 
 }  // namespace
 
@@ -131,11 +126,22 @@ std::optional<HeldValues> flat_top(const base::LongColumn<double>& values, const
       values, left_out, [&](std::size_t /*scan*/, double value) { return value >= largest - steps; });
   const auto count = static_cast<double>(values.size());
   const double enough = std::log(kBands * count * count / kFalseAlarm);
+  const std::array bands{0.5 * step, steps, kBandSigmas[0] * sigma, kBandSigmas[1] * sigma,
+                         kBandSigmas[2] * sigma};
+  std::array<Tops, bands.size()> tops_of;
+  for (std::size_t i = 0; i < bands.size(); ++i) {
+    tops_of[i].held.lowest = largest - bands[i];
+    tops_of[i].held.highest = largest;
+  }
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double value = values[k];
+    const bool usable = !left_out(k);
+    for (Tops& tops : tops_of) tops.add(k, value, usable);
+  }
   std::optional<HeldValues> found;
-  for (const double band :
-       {0.5 * step, steps, kBandSigmas[0] * sigma, kBandSigmas[1] * sigma, kBandSigmas[2] * sigma}) {
-    const double p = in_band(band, step, sigma);
-    const Tops tops = tops_of(values, left_out, largest - band, largest);
+  for (std::size_t i = 0; i < bands.size(); ++i) {
+    const double p = in_band(bands[i], step, sigma);
+    const Tops& tops = tops_of[i];
     if (tops.judged == 0.0 || p >= 1.0) continue;
     const double share = tops.followed / tops.judged;
     if (share <= p || tops.judged * divergence(share, p) < enough) continue;

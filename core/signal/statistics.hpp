@@ -23,41 +23,51 @@ inline constexpr double kRoundingSigma = 0.28867513459481287;
   return *middle;
 }
 
-/// Largest number of values that nth_of() copies and sorts; for more it finds byte by byte, in constant
-/// memory.
+/// Largest number of values that nth_of() copies and sorts; of more it first finds the bits with which the
+/// answer begins, in constant memory.
 inline constexpr std::size_t kMostSorted = std::size_t{1} << 16U;
 
-/// The value at a place of value(0) … value(count − 1) in rising order. Each is evaluated once, or eight
-/// times if count > kMostSorted. \param place  from 0, < count. \param value  no NaN.
+/// The value at a place of value(0) … value(count − 1) in rising order. Each is evaluated once, or two to
+/// four times if count > kMostSorted. \param place  from 0, < count. \param value  no NaN.
 template <typename Value>
 [[nodiscard]] double nth_of(std::size_t count, std::size_t place, const Value& value) {
-  if (count <= kMostSorted) {
-    std::vector<double> values(count);
-    for (std::size_t i = 0; i < count; ++i) values[i] = value(i);
-    const auto nth = values.begin() + static_cast<std::ptrdiff_t>(place);
-    std::nth_element(values.begin(), nth, values.end());
-    return *nth;
-  }
   // Doubles rise with their bits; those below zero are turned round.
   constexpr std::uint64_t kSign = std::uint64_t{1} << 63U;
   const auto rank_of = [](double number) {
     const auto bits = std::bit_cast<std::uint64_t>(number);
     return (bits & kSign) != 0 ? ~bits : bits | kSign;
   };
+  constexpr unsigned kDigit = 16;  // Bits found in one walk over the values.
+  constexpr std::uint64_t kDigits = std::uint64_t{1} << kDigit;
   std::uint64_t answer = 0;
-  // The place is among those that begin with the bytes found.
-  for (unsigned shift = 56;; shift -= 8U) {
-    std::array<std::size_t, 256> counts{};
+  unsigned unknown = 64;      // Its last bits.
+  std::size_t alike = count;  // Values that begin with the bits known.
+  const auto begins_alike = [&](double number) {
+    return unknown == 64 || ((rank_of(number) ^ answer) >> unknown) == 0;
+  };
+  while (alike > kMostSorted && unknown > 0) {
+    std::vector<std::size_t> counts(kDigits);
+    const unsigned shift = unknown - kDigit;
     for (std::size_t i = 0; i < count; ++i) {
-      const std::uint64_t rank = rank_of(value(i));
-      if (((rank ^ answer) >> shift >> 8U) == 0) ++counts[(rank >> shift) & 0xFFU];
+      const double number = value(i);
+      if (begins_alike(number)) ++counts[(rank_of(number) >> shift) % kDigits];
     }
-    std::uint64_t byte = 0;
-    for (; place >= counts[byte]; ++byte) place -= counts[byte];
-    answer |= byte << shift;
-    if (shift == 0) break;
+    std::uint64_t digit = 0;
+    for (; place >= counts[digit]; ++digit) place -= counts[digit];
+    answer |= digit << shift;
+    alike = counts[digit];
+    unknown = shift;
   }
-  return std::bit_cast<double>((answer & kSign) != 0 ? answer & ~kSign : ~answer);
+  if (unknown == 0) return std::bit_cast<double>((answer & kSign) != 0 ? answer & ~kSign : ~answer);
+  std::vector<double> values;
+  values.reserve(alike);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double number = value(i);
+    if (begins_alike(number)) values.push_back(number);
+  }
+  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(place);
+  std::nth_element(values.begin(), nth, values.end());
+  return *nth;
 }
 
 /// Upper median of value(0) … value(count − 1), as nth_of().

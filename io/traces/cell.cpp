@@ -41,8 +41,9 @@ bool is_hole(std::string_view text) {
   return std::find(kHoles.begin(), kHoles.end(), std::string_view{lower.data(), text.size()}) != kHoles.end();
 }
 
+/// \param number  of Digits::text.
 int decimals_of(std::string_view number) {
-  const std::size_t exponent = number.find_first_of("eE");
+  const std::size_t exponent = number.find('e');
   const std::string_view mantissa = number.substr(0, exponent);
   const std::size_t point = mantissa.find('.');
   int decimals = point == std::string_view::npos ? 0 : static_cast<int>(mantissa.size() - point - 1);
@@ -141,7 +142,7 @@ Digits digits_in(std::string_view text, char decimal) {
 
 std::string_view trimmed(std::string_view text) noexcept {
   const auto is_plain = [](char c) { return c > ' ' && c <= '~'; };
-  if (!text.empty() && is_plain(text.front()) && is_plain(text.back())) return text;
+  if (text.empty() || (is_plain(text.front()) && is_plain(text.back()))) return text;
   const auto drop = [&text](std::string_view blank, bool front) {
     if (front ? !text.starts_with(blank) : !text.ends_with(blank)) return false;
     front ? text.remove_prefix(blank.size()) : text.remove_suffix(blank.size());

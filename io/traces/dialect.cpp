@@ -62,8 +62,10 @@ base::Result<Head> read_head(const Source& source, const DialectOptions& options
   return head;
 }
 
-std::vector<std::string_view> views(const std::vector<std::string>& texts) {
-  return {texts.begin(), texts.end()};
+bool is_scans(const Row& row, const Dialect& dialect) {
+  std::vector<Cell> cells;
+  dialect.read_cells({row.fields.begin(), row.fields.end()}, cells);
+  return dialect.is_row(cells);
 }
 
 std::vector<Row> rows_of(const Head& head, char separator, std::int64_t skip) {
@@ -174,7 +176,7 @@ bool is_heading(const Row& row, const Dialect& dialect);
 /// Statistics may stand before the scans, as a short table with a heading of its own.
 std::size_t after_short_tables(const Reading& reading, std::size_t first) {
   const auto& rows = reading.rows;
-  const auto is_row = [&](std::size_t i) { return reading.dialect.is_row(views(rows[i].fields)); };
+  const auto is_row = [&](std::size_t i) { return is_scans(rows[i], reading.dialect); };
   const auto end_of = [&](std::size_t begin) {
     while (begin < rows.size() && is_row(begin)) ++begin;
     return begin;
@@ -197,7 +199,7 @@ std::size_t after_short_tables(const Reading& reading, std::size_t first) {
 
 /// The first row that is followed by rows. \return whether the lines after it are rows as well.
 bool find_first_row(Reading& reading) {
-  const auto is_row = [&reading](const Row& row) { return reading.dialect.is_row(views(row.fields)); };
+  const auto is_row = [&reading](const Row& row) { return is_scans(row, reading.dialect); };
   const auto& rows = reading.rows;
   std::size_t first = 0;
   while (first < rows.size() &&
@@ -393,17 +395,20 @@ std::string_view Dialect::content(std::size_t column, std::string_view field) co
   return field.substr(mark + 1);
 }
 
-bool Dialect::is_row(const std::vector<std::string_view>& fields) const {
-  // A comment may stand behind the numbers.
-  for (std::size_t c = columns.size(); c < fields.size(); ++c) {
-    if (read_cell(fields[c], decimal).kind == CellKind::kNumber) return false;
+void Dialect::read_cells(const std::vector<std::string_view>& fields, std::vector<Cell>& cells) const {
+  cells.clear();
+  for (std::size_t c = 0; c < fields.size(); ++c) {
+    cells.push_back(c >= columns.size() || numeric[c] ? read_cell(content(c, fields[c]), decimal) : Cell{});
   }
+}
+
+bool Dialect::is_row(std::span<const Cell> cells) const {
   bool any = false;
-  for (std::size_t c = 0; c < columns.size() && c < fields.size(); ++c) {
-    if (!numeric[c]) continue;
-    const CellKind kind = read_cell(content(c, fields[c]), decimal).kind;
-    if (kind == CellKind::kText) return false;
-    any = any || kind == CellKind::kNumber;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    const bool is_number = cells[c].kind == CellKind::kNumber;
+    // A comment may stand behind the numbers.
+    if (c < columns.size() ? numeric[c] && cells[c].kind == CellKind::kText : is_number) return false;
+    any = any || is_number;
   }
   return any;
 }

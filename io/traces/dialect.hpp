@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -49,9 +50,12 @@ struct Dialect {
 
   /// The field as a cell holds it: without its label.
   [[nodiscard]] std::string_view content(std::size_t column, std::string_view field) const;
+  /// Reads the fields of the numeric columns and those behind the last column; cells of other columns are
+  /// empty.
+  void read_cells(const std::vector<std::string_view>& fields, std::vector<Cell>& cells) const;
   /// Whether these fields are one row of scans: a number or a hole in each numeric column, one number at
-  /// least.
-  [[nodiscard]] bool is_row(const std::vector<std::string_view>& fields) const;
+  /// least. \param cells  from read_cells().
+  [[nodiscard]] bool is_row(std::span<const Cell> cells) const;
   /// The column in which a row of scans begins with a word where most have nothing or a clock time: at the
   /// end of the table, below none that has a word there, it is one of statistics, "Mean;0.50;2.41".
   [[nodiscard]] std::optional<std::size_t> label_column(const std::vector<std::string_view>& fields) const;

@@ -26,7 +26,7 @@ struct Source {
   std::string path;       ///< As the user gave it, for messages.
   std::string opened;     ///< What is opened in its place.
   base::Descriptor copy;  ///< Of a pipe.
-  /// Told from time to time which part has been read, 0 … 1; may be empty.
+  /// Told from time to time which part has been read, 0 … 1, by the thread that reads; may be empty.
   std::function<void(double)> progress{};
 
   /// Errors: base::open_text().

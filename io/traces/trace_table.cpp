@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <future>
 #include <limits>
 #include <set>
 
@@ -42,6 +43,60 @@ std::optional<std::size_t> best_before(const Dialect& dialect, std::size_t colum
 /// Lines at the end that are no scans, unless they are few beside the scans.
 constexpr std::size_t kLongestFooter = 100;
 
+/// Some rows of a table, one behind the other.
+struct Rows {
+  struct Row {
+    std::int64_t line = 0;  ///< Of its beginning, from 1.
+    std::size_t end = 0;    ///< Of its fields, in ends.
+  };
+  std::vector<Row> rows;
+  std::string text;                  ///< Of all fields.
+  std::vector<std::size_t> ends;     ///< Of each field, in text.
+  bool is_end = false;               ///< No rows follow,
+  std::optional<base::Error> error;  ///< since the file could not be read further.
+};
+
+/// Splits the lines of a table into fields.
+class RowSplitter {
+ public:
+  RowSplitter(TextFile& file, const Dialect& dialect)
+      : file_(file), dialect_(dialect), reader_(dialect.separator) {}
+
+  /// The next rows.
+  Rows next() {
+    constexpr std::size_t kMost = std::size_t{1} << 14U;
+    Rows rows;
+    while (rows.rows.size() < kMost) {
+      const auto more = file_.next(line_);
+      rows.is_end = !more || !*more;
+      if (!more) rows.error = more.error();
+      if (rows.is_end) break;
+      if (file_.line_number() < dialect_.first_row_line || (!open_ && is_no_row(line_))) continue;
+      if (!open_) row_line_ = file_.line_number();
+      open_ = !reader_.add(line_);
+      if (open_) continue;
+      for (const std::string_view field : reader_.fields()) {
+        rows.text += field;
+        rows.ends.push_back(rows.text.size());
+      }
+      rows.rows.push_back({row_line_, rows.ends.size()});
+    }
+    return rows;
+  }
+
+  /// Whether the file ended within a row, and where that begins.
+  [[nodiscard]] bool is_open() const noexcept { return open_; }
+  [[nodiscard]] std::int64_t row_line() const noexcept { return row_line_; }
+
+ private:
+  TextFile& file_;
+  const Dialect& dialect_;
+  RowReader reader_;
+  std::string line_;
+  std::int64_t row_line_ = 0;
+  bool open_ = false;
+};
+
 class TableReader {
  public:
   TableReader(const Source& source, const Dialect& dialect, std::size_t value_column,
@@ -56,22 +111,25 @@ class TableReader {
   base::Result<TraceTable> read() {
     auto file = TextFile::open(source_, dialect_.encoding);
     if (!file) return tl::unexpected(file.error());
-    RowReader reader{dialect_.separator};
-    std::string line;
-    std::int64_t row_line = 0;
-    bool open = false;
-    while (true) {
-      const auto more = file->next(line);
-      if (!more) return tl::unexpected(more.error());
-      if (!*more) break;
-      if (file->line_number() < dialect_.first_row_line || (!open && is_no_row(line))) continue;
-      if (!open) row_line = file->line_number();
-      open = !reader.add(line);
-      if (open) continue;
-      if (auto taken = take(reader.fields(), row_line); !taken) return tl::unexpected(taken.error());
+    RowSplitter splitter{*file, dialect_};
+    // The next rows are split in another thread while these are taken.
+    const auto split = [&splitter] { return std::async([&splitter] { return splitter.next(); }); };
+    std::vector<std::string_view> fields;
+    for (auto next = split(); next.valid();) {
+      const Rows rows = next.get();
+      if (!rows.is_end) next = split();
+      std::size_t field = 0;
+      std::size_t begin = 0;
+      for (const Rows::Row& row : rows.rows) {
+        fields.clear();
+        for (; field < row.end; begin = rows.ends[field++])
+          fields.push_back(std::string_view{rows.text}.substr(begin, rows.ends[field] - begin));
+        if (auto taken = take(fields, row.line); !taken) return tl::unexpected(taken.error());
+      }
+      if (rows.error) return tl::unexpected(*rows.error);
     }
     leave_out_labelled();
-    if (open) strange(row_line, "a quote that does not end");
+    if (splitter.is_open()) strange(splitter.row_line(), "a quote that does not end");
     if (!file->line_was_ended()) leave_out_cut_line(file->line_number());
     if (table_.value.empty() && strange_rows_ > 0) {
       return base::usage_error("{}:{}: {}: no number and no time; choose another column", path_,
@@ -91,6 +149,13 @@ class TableReader {
  private:
   static std::string_view field(const std::vector<std::string_view>& fields, std::size_t column) {
     return column < fields.size() ? fields[column] : std::string_view{};
+  }
+
+  /// Of the row in cells_. \param content  of its field in this column.
+  [[nodiscard]] Cell cell(std::size_t column, std::string_view content) const {
+    const bool is_read =
+        column < cells_.size() && (column >= dialect_.columns.size() || dialect_.numeric[column]);
+    return is_read ? cells_[column] : read_cell(content, dialect_.decimal);
   }
 
   void strange(std::int64_t line, std::string what) {
@@ -138,17 +203,21 @@ class TableReader {
       table_.notes.push_back(fmt::format("line {} left out: the heading or its units again", line));
       return {};
     }
+    dialect_.read_cells(fields, cells_);
     const std::string_view value_text = dialect_.content(value_column_, field(fields, value_column_));
-    const Cell value = read_cell(value_text, dialect_.decimal);
+    const Cell value = cell(value_column_, value_text);
     std::optional<TimeCell> time;
     std::string_view time_text;
+    bool no_time = false;
+    bool time_is_hole = false;
     if (time_column_) {
       time_text = trimmed(dialect_.content(*time_column_, field(fields, *time_column_)));
-      time = read_time_cell(time_text, dialect_.decimal);
+      const Cell number = cell(*time_column_, time_text);
+      time = read_time_cell(time_text, number, dialect_.decimal);
+      no_time = !time;
+      time_is_hole = no_time && number.kind != CellKind::kText;
     }
-    const bool no_time = time_column_ && !time;
-    const bool time_is_hole = no_time && read_cell(time_text, dialect_.decimal).kind != CellKind::kText;
-    if (value.kind == CellKind::kText || (no_time && !time_is_hole) || !dialect_.is_row(fields)) {
+    if (value.kind == CellKind::kText || (no_time && !time_is_hole) || !dialect_.is_row(cells_)) {
       const bool value_is_wrong = value.kind == CellKind::kText;
       strange(
           line,
@@ -182,10 +251,7 @@ class TableReader {
     note_label(fields);
     add(hole ? base::kNaN : value.value, time, line);
     // The last number of the line, which would be cut first.
-    const Cell last = fields.size() == value_column_ + 1
-                          ? value
-                          : read_cell(dialect_.content(fields.size() - 1, fields.back()), dialect_.decimal);
-    last_decimals_ = last.decimals;
+    last_decimals_ = cell(fields.size() - 1, dialect_.content(fields.size() - 1, fields.back())).decimals;
     last_fields_ = fields.size();
     if (file_rows_++ > 0) {
       most_decimals_ = std::max(most_decimals_, previous_decimals_);
@@ -281,6 +347,7 @@ class TableReader {
   std::int64_t strange_line_ = 0;
   std::string strange_what_;
   bool any_value_ = false;
+  std::vector<Cell> cells_;  ///< Of the row at hand.
   struct MarkPlace {
     std::int64_t line = 0;
     std::string text;

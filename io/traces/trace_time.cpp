@@ -6,8 +6,6 @@
 #include <chrono>
 #include <vector>
 
-#include "io/traces/cell.hpp"
-
 namespace stickslip::traces {
 namespace {
 
@@ -130,8 +128,12 @@ std::optional<TimeCell> read_moment(std::string_view text, char decimal) {
 }  // namespace
 
 std::optional<TimeCell> read_time_cell(std::string_view text, char decimal) {
+  return read_time_cell(text, read_cell(text, decimal), decimal);
+}
+
+std::optional<TimeCell> read_time_cell(std::string_view text, const Cell& cell, char decimal) {
   text = trimmed(text);
-  if (const Cell cell = read_cell(text, decimal); cell.kind == CellKind::kNumber) {
+  if (cell.kind == CellKind::kNumber) {
     TimeCell time;
     time.value = cell.value;
     time.decimals = cell.decimals;

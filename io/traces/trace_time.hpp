@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "io/traces/cell.hpp"
+
 namespace stickslip::traces {
 
 struct TimeCell {
@@ -22,5 +24,7 @@ struct TimeCell {
 /// ("2026-11-25T12:00:00.5Z") or with points ("25.11.2026 12:00:00"). Of a date with slashes that has its
 /// year last, the clock alone counts: its day and month cannot be told apart. \return nothing for other text.
 [[nodiscard]] std::optional<TimeCell> read_time_cell(std::string_view text, char decimal);
+/// The same. \param cell  what read_cell() says of the text.
+[[nodiscard]] std::optional<TimeCell> read_time_cell(std::string_view text, const Cell& cell, char decimal);
 
 }  // namespace stickslip::traces

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <future>
+#include <numeric>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -69,6 +71,24 @@ TEST(LongColumn, LosesItsLastElements) {
       EXPECT_EQ(column.size(), size + 6 * Column::kBlock - 1);
     }
   }
+}
+
+TEST(LongColumn, IsReadInTwoThreadsByAView) {
+  for (const std::filesystem::path& folder :
+       {std::filesystem::path{}, std::filesystem::temp_directory_path()}) {
+    const Column column = counted(Column{folder});
+    const auto sum = [](const Column& numbers) {
+      return std::accumulate(numbers.begin(), numbers.end(), std::int64_t{0});
+    };
+    auto other = std::async(std::launch::async, sum, column.view());
+    constexpr auto kCount = static_cast<std::int64_t>(kSize);
+    EXPECT_EQ(sum(column), 3 * kCount * (kCount - 1) / 2);
+    EXPECT_EQ(other.get(), sum(column));
+  }
+  // A view outlives its column.
+  const Column view = counted(Column{std::filesystem::temp_directory_path()}).view();
+  EXPECT_EQ(view[1], 3);
+  EXPECT_TRUE(Column{}.view().empty());
 }
 
 TEST(LongColumn, WithoutAFolderIsAVectorThatMayBeChangedAndCopied) {

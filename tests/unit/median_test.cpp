@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <random>
@@ -32,6 +33,15 @@ TEST(Median, OfMoreThanAreSortedIsTheSame) {
     }
   }
   EXPECT_EQ(median_of(kMostSorted + 1, [](std::size_t) { return -3.5; }), -3.5);
+}
+
+TEST(Median, OfManyThatDifferInTheirLastBitsIsExact) {
+  // More than are sorted begin with the same 48 bits.
+  const std::size_t half = kMostSorted + 1;
+  const double next = std::nextafter(1.0, 2.0);
+  const auto value = [&](std::size_t i) { return i % 2 == 0 ? next : 1.0; };
+  EXPECT_EQ(nth_of(2 * half, half - 1, value), 1.0);
+  EXPECT_EQ(nth_of(2 * half, half, value), next);
 }
 
 TEST(Median, IsOneOfTheValuesInRisingOrder) {

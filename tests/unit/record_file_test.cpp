@@ -44,6 +44,35 @@ TEST(RecordFile, WithoutAnalysisSaysWhyItHasNoRung) {
   EXPECT_EQ(read->end->results.rung_reason, "not analysed");
 }
 
+TEST(RecordFile, IsWrittenWhileItsEndIsComputed) {
+  const TemporaryFolder folder;
+  const record::Record whole = test::sample_record();
+  record::Record record = whole;
+  record::EndRecord end = *whole.end;
+  end.spikes = {1003, 1059};
+  record.spikes.clear();
+  const record::RecordScans scans{record};
+  ASSERT_TRUE(
+      publish_record(record, scans, folder / "a.h5", [&] { return base::Result<record::EndRecord>{end}; }));
+  const auto read = read_record(folder / "a.h5");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->spikes, end.spikes);
+  EXPECT_EQ(read->end->results, whole.end->results);
+
+  const auto refused =
+      publish_record(record, scans, folder / "b.h5",
+                     []() -> base::Result<record::EndRecord> { return base::usage_error("no speed"); });
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message, "no speed");
+  EXPECT_EQ(refused.error().exit_status(), 2);
+  EXPECT_THROW(static_cast<void>(publish_record(record, scans, folder / "b.h5",
+                                                []() -> base::Result<record::EndRecord> {
+                                                  throw std::system_error{ENOSPC, std::generic_category()};
+                                                })),
+               std::system_error);
+  EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"a.h5"});
+}
+
 TEST(RecordFile, HasTheDiagnosticsApartFromTheOtherResults) {
   const TemporaryFolder folder;
   ASSERT_TRUE(publish_record(test::sample_record(), folder / "a.h5"));
