@@ -168,9 +168,10 @@ base::Result<std::string> run_trend(const TrendOptions& options) {
   if (const auto read = batches.read_on(book); !read) return tl::unexpected(read.error());
   const auto reference =
       options.reference.empty() ? std::nullopt : std::optional<std::string>{options.reference};
-  const daemon::TrendState state = daemon::trend_state(history.charts(book, reference));
+  const trend::TesterCharts charts = history.charts(book, reference);
+  const daemon::TrendState state = daemon::trend_state(charts);
   if (!options.json) return text_of(options, state);
-  nlohmann::ordered_json json = daemon::trend_json(state);
+  nlohmann::ordered_json json = daemon::trend_course_json(charts, state);
   json["history"] = history.path().string();
   return io::json_document(json);
 }

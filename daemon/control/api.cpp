@@ -85,7 +85,7 @@ class Api {
     bool changes;
     Function function;
   };
-  static const std::array<Route, 30> kRoutes;
+  static const std::array<Route, 31> kRoutes;
 
   static std::optional<std::string> match(const Route& route, const std::string& path) {
     if (!route.path.ends_with('/')) return path == route.path ? std::optional<std::string>{""} : std::nullopt;
@@ -216,6 +216,10 @@ class Api {
             409, fmt::format("test {} is running; GET /v1/live tells its scans until it has ended", number)));
     }
     answer(daemon::refusal(404, no_such_test(printable(named), tests)));
+  }
+
+  void trend(const daemon::HttpRequest&, const std::string&, const daemon::HttpAnswer& answer) {
+    bench_.trend([answer](std::string text) { answer({200, std::move(text), {}}); });
   }
 
   void record(const daemon::HttpRequest&, const std::string& rest, const daemon::HttpAnswer& answer) {
@@ -451,12 +455,13 @@ class Api {
   Repeats repeats_;
 };
 
-const std::array<Api::Route, 30> Api::kRoutes{{
+const std::array<Api::Route, 31> Api::kRoutes{{
     {"GET", "/v1/status", false, &Api::status},
     {"GET", "/v1/openapi.json", false, &Api::description},
     {"GET", "/v1/tests", false, &Api::tests},
     {"GET", "/v1/tests/", false, &Api::test},
     {"GET", "/v1/records/", false, &Api::record},
+    {"GET", "/v1/trend", false, &Api::trend},
     {"GET", "/v1/plan", false, &Api::plan},
     {"PUT", "/v1/plan", true, &Api::set_plan},
     {"GET", "/v1/batch", false, &Api::batch},

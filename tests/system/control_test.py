@@ -243,7 +243,7 @@ class Description(unittest.TestCase):
         return status, body
 
     def test_every_path_method_and_answer_is_as_described(self):
-        for path in ("/v1/status", "/v1/openapi.json", "/v1/tests", "/v1/plan", "/v1/batch", "/v1/batches", "/v1/controller", "/v1/calibration", "/metrics"):
+        for path in ("/v1/status", "/v1/openapi.json", "/v1/tests", "/v1/trend", "/v1/plan", "/v1/batch", "/v1/batches", "/v1/controller", "/v1/calibration", "/metrics"):
             self.assertEqual(self.check("GET", path)[0], 200)
         self.assertEqual(self.check("GET", "/v1/live")[0], 426)
         self.crowd()

@@ -151,6 +151,7 @@ class PaperBench final : public Bench {
   void set_plan(Plan plan) override { plan_ = std::move(plan); }
   [[nodiscard]] Batches& batches() override { return batches_; }
   [[nodiscard]] Reports& reports() override { return reported; }
+  void trend(std::function<void(std::string)> answer) override { answer(R"({"charts": []})"); }
   void command(Command command, std::function<void(const Outcome&)> answer) override {
     commands.push_back(command);
     if (later) {
