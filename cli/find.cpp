@@ -24,6 +24,8 @@
 #include "core/base/text.hpp"
 #include "core/base/wording.hpp"
 #include "core/record/iso_time.hpp"
+#include "daemon/types/batch_journal.hpp"
+#include "daemon/types/batch_json.hpp"
 
 namespace stickslip::cli {
 namespace {
@@ -160,6 +162,8 @@ std::string text_of(const FindOptions& options, const Found& found) {
   if (options.wide && !found.entries.empty()) text += fmt::format("{}\n", io::kErrorsLegend);
   if (!options.wide && !found.entries.empty()) text += "errors and files: --wide; files alone: --paths\n";
   if (!all_significant) text += fmt::format("{}\n", io::kNotSignificantLegend);
+  if (const std::size_t rest = found.match_count - found.entries.size(); rest > 0)
+    text += fmt::format("{} more of {} records are not shown: --most\n", rest, found.match_count);
   if (options.unread) {
     for (const catalogue::UnreadFile& file : found.unread)
       text += fmt::format("{}: {}\n", base::printable(path_of(options, file.file)),
@@ -170,12 +174,35 @@ std::string text_of(const FindOptions& options, const Found& found) {
   return text;
 }
 
+/// Tests that are void, by the journal of the batches of this folder, or of one above where this is a dated
+/// folder.
+class Voidings {
+ public:
+  explicit Voidings(const std::filesystem::path& folder) {
+    const std::filesystem::path place = daemon::journal_folder_of(folder / "any.h5").value_or(folder);
+    prefix_ = daemon::name_in_journal(place, folder);
+    daemon::BatchJournal journal{place};
+    // A journal that cannot be read voids nothing.
+    if (!journal.read_on(book_)) book_ = {};
+  }
+  [[nodiscard]] Json of(const std::string& file) const {
+    return daemon::voiding_json(book_.voided((prefix_ / file).lexically_normal().generic_string()));
+  }
+
+ private:
+  std::filesystem::path prefix_;  ///< From the journal's folder to the searched one.
+  daemon::BatchBook book_;
+};
+
 Json json_of(const FindOptions& options, const Found& found) {
+  const Voidings voidings{options.folder};
   Json records = Json::array();
   for (const Entry& entry : found.entries) {
     const record::SampleFacts& sample = entry.sample;
     records.push_back(
         {{"file", path_of(options, entry.file)},
+         {"record", entry.file},
+         {"voided", voidings.of(entry.file)},
          {"start_time", entry.start_realtime_ns ? Json(record::iso_time(*entry.start_realtime_ns)) : Json()},
          {"title", io::or_null(entry.title)},
          {"uuid", io::or_null(entry.uuid)},
@@ -198,7 +225,7 @@ Json json_of(const FindOptions& options, const Found& found) {
                       {"looked", file.state == catalogue::State::kUnreadable},
                       {"why", file.why}});
   }
-  return {{"records", records}, {"unread", unread}};
+  return {{"records", records}, {"count", found.match_count}, {"unread", unread}, {"notices", found.notices}};
 }
 
 std::string csv_of(const FindOptions& options, const Found& found) {

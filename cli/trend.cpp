@@ -163,14 +163,13 @@ base::Result<std::string> run_trend(const TrendOptions& options) {
         "--add RECORDS",
         base::printable(history.path().string()), base::shell_word(options.folder));
   }
-  daemon::BatchJournal batches{options.folder};
-  daemon::BatchBook book;
-  if (const auto read = batches.read_on(book); !read) return tl::unexpected(read.error());
   const auto reference =
       options.reference.empty() ? std::nullopt : std::optional<std::string>{options.reference};
-  const daemon::TrendState state = daemon::trend_state(history.charts(book, reference));
+  const base::Result<trend::TesterCharts> charts = daemon::charts_now(history, reference);
+  if (!charts) return tl::unexpected(charts.error());
+  const daemon::TrendState state = daemon::trend_state(*charts);
   if (!options.json) return text_of(options, state);
-  nlohmann::ordered_json json = daemon::trend_json(state);
+  nlohmann::ordered_json json = daemon::trend_course_json(*charts, state);
   json["history"] = history.path().string();
   return io::json_document(json);
 }

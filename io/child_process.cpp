@@ -135,7 +135,8 @@ bool ends_within(const record::Descriptor& process, std::chrono::milliseconds lo
 base::Result<std::optional<ChildProcess>> ChildProcess::start(const std::string& program,
                                                               std::vector<std::string> arguments,
                                                               std::string_view input_text,
-                                                              const ChildLimits& limits) {
+                                                              const ChildLimits& limits,
+                                                              std::vector<std::string> variables) {
   const record::Descriptor input = memory_file("input");
   record::Descriptor output = memory_file("output");
   record::Descriptor errors = memory_file("errors");
@@ -147,8 +148,10 @@ base::Result<std::optional<ChildProcess>> ChildProcess::start(const std::string&
   for (std::string& argument : arguments) argument_list.push_back(argument.data());
   argument_list.push_back(nullptr);
   // Nothing of the user's: neither language nor variables that the program knows.
-  std::string locale = "LC_ALL=C.UTF-8";
-  const std::array<char*, 2> environment{locale.data(), nullptr};
+  variables.emplace_back("LC_ALL=C.UTF-8");
+  std::vector<char*> environment;
+  for (std::string& variable : variables) environment.push_back(variable.data());
+  environment.push_back(nullptr);
   const Redirections redirections{input.get(), output.get(), errors.get()};
   const LimitsEnd attributes;
   pid_t child = 0;

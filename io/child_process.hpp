@@ -32,13 +32,12 @@ struct ChildLimits {
 /// A running child process. Thread-bound.
 class ChildProcess {
  public:
-  /// Starts a program without the user's environment; `input` is its standard input.
-  /// \param program  a path, or a name that is looked for in PATH. \return nothing if there is no such
+  /// Starts a program without the user's environment but `variables` ("NAME=value"); `input` is its standard
+  /// input. \param program  a path, or a name that is looked for in PATH. \return nothing if there is no such
   /// program. Errors: kFailure if it cannot be started.
-  [[nodiscard]] static base::Result<std::optional<ChildProcess>> start(const std::string& program,
-                                                                       std::vector<std::string> arguments,
-                                                                       std::string_view input,
-                                                                       const ChildLimits& limits = {});
+  [[nodiscard]] static base::Result<std::optional<ChildProcess>> start(
+      const std::string& program, std::vector<std::string> arguments, std::string_view input,
+      const ChildLimits& limits = {}, std::vector<std::string> variables = {});
   /// Kills the child (SIGKILL) unless wait() has returned.
   ~ChildProcess();
   ChildProcess(ChildProcess&& other) noexcept;

@@ -11,11 +11,13 @@
 #include "io/calibration_file.hpp"
 #include <nlohmann/json.hpp>
 
+#include "core/base/shell_word.hpp"
 #include "core/base/version.hpp"
 #include "core/record/iso_time.hpp"
 #include "daemon/runtime/session_setup.hpp"
 #include "daemon/storage/disk_writer.hpp"
 #include "daemon/storage/finaliser_process.hpp"
+#include "daemon/types/tester_history.hpp"
 
 namespace stickslip::doctor {
 namespace {
@@ -50,6 +52,7 @@ class Examination {
     look_at_realtime();
     look_at_clock();
     look_at_fleet();
+    look_at_trend();
     return std::move(findings_);
   }
 
@@ -339,6 +342,26 @@ class Examination {
                   "is the broker there, and is this tester's name, password and topic right? docs/fleet.md");
     }
     good("fleet", fmt::format("{}, connected as {}", config_->fleet->broker_url, config_->fleet->tester));
+  }
+
+  void look_at_trend() {
+    if (!config_) return unknown("trend");
+    const std::string folder = base::shell_word(config_->record_folder.string());
+    daemon::TesterHistory history{config_->record_folder};
+    auto read = history.read_on();
+    const auto charts = read ? daemon::charts_now(history) : tl::unexpected(read.error());
+    if (!charts) {
+      return warn("trend", charts.error().message,
+                  "let this user read it; one that is damaged is moved away, and the charts begin anew");
+    }
+    const std::vector<base::Finding> alarms = charts->findings();
+    for (const base::Finding& alarm : alarms) {
+      warn("trend", alarm.text,
+           fmt::format("{}; stickslip trend {} --restart {} --reason TEXT", alarm.action, folder,
+                       alarm.code.substr(alarm.code.find('-') + 1)));
+    }
+    if (alarms.empty())
+      good("trend", history.events().empty() ? "no test is charted yet" : "no alarm of a control chart");
   }
 
   std::filesystem::path file_;

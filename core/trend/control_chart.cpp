@@ -66,7 +66,11 @@ std::optional<ChartAlarm> ControlChart::add(double value) {
     const signal::RunningMean& since = arm.since;
     // The first value has the score 0, so that some are before the onset.
     const double before = (all_.mean * all_.count - since.mean * since.count) / (all_.count - since.count);
-    alarm = {rises, count_ + 1 - static_cast<std::int64_t>(since.count), count_, since.mean - before,
+    alarm = {rises,
+             count_ + 1 - static_cast<std::int64_t>(since.count),
+             count_,
+             arm.height,
+             since.mean - before,
              arm.standard_deviation};
     restart_arms();
   }

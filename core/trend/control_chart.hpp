@@ -57,6 +57,7 @@ struct ChartAlarm {
   bool rises = false;      ///< Which arm told it.
   std::int64_t onset = 0;  ///< Index of the first value after the arm was 0 last: the estimated change.
   std::int64_t told = 0;   ///< Index of the value that told it.
+  double height = 0.0;     ///< Of that arm with this value: above kDecisionInterval.
   double shift = 0.0;      ///< Mean since the onset less the mean before, in the unit of the values.
   double standard_deviation = 0.0;  ///< Of the baseline at the onset.
 };

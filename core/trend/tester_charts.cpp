@@ -109,6 +109,10 @@ std::vector<Quantity> TesterCharts::add(const TestValues& test) {
     state.latest = value;
     state.latest_file = test.file;
     if (state.chart.is_outside()) ++state.outside_count;
+    state.points.push_back({test.time, test.file, *value,
+                            alarm && alarm->rises ? alarm->height : state.chart.upper(),
+                            alarm && !alarm->rises ? alarm->height : state.chart.lower()});
+    if (state.points.size() > ChartState::kMostPoints) state.points.pop_front();
     // The first alarm stands until somebody acknowledges it.
     if (alarm && !state.alarm) {
       const TestName& since = tests_[i].end()[alarm->onset - alarm->told - 1];

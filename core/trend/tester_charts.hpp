@@ -65,13 +65,25 @@ enum class Verdict { kOff, kLearning, kInControl, kAlarm };
 /// "off", "learning", "in control", "alarm".
 [[nodiscard]] std::string_view name(Verdict verdict) noexcept;
 
+/// A test on a chart, to draw it.
+struct ChartPoint {
+  std::string time;
+  std::string file;
+  double value = 0.0;
+  // Arms with this value, in standard deviations.
+  double upper = 0.0;
+  double lower = 0.0;
+};
+
 struct ChartState {
   ControlChart chart;
   std::optional<double> latest;
   std::string latest_file;
   std::int64_t outside_count = 0;  ///< Values beyond Shewhart limits since the restart.
   std::optional<StandingAlarm> alarm;
-  std::string no_value_reason;  ///< Why the latest test gave no value; empty if it did.
+  std::string no_value_reason;    ///< Why the latest test gave no value; empty if it did.
+  std::deque<ChartPoint> points;  ///< The latest kMostPoints since the restart, oldest first.
+  static constexpr std::size_t kMostPoints = 200;
 
   [[nodiscard]] Verdict verdict() const noexcept;
 };

@@ -78,7 +78,7 @@ App::App(io::DaemonConfig config, AppWorld world)
           [this] {
             if (reload_at_rest_.exchange(false)) reload_at_rest(*session_);
           }),
-      live_(io_, *clock_, [this] { return daemon::health_frame(status()); }),
+      live_(io_, *clock_, [this] { return daemon::health_frame(asked_status()); }),
       batches_({.folder = config_.record_folder,
                 .program = "/proc/self/exe",
                 .plan = [this] { return commands_.plan(); },
@@ -105,11 +105,17 @@ App::App(io::DaemonConfig config, AppWorld world)
                  .tests = tests_,
                  .storage = storage_,
                  .calibrations = calibrations_,
-                 .status = [this] { return status(); },
+                 .status = [this] { return asked_status(); },
                  .session = [this] { return session_.get(); },
                  .on_main = [this](std::function<void()> done) { boost::asio::post(io_, std::move(done)); },
                  .batches = &batches_,
-                 .reports = &reports_}),
+                 .reports = &reports_,
+                 .trend =
+                     [this](std::function<void(std::string)> answer) {
+                       charts_.ask([this, answer = std::move(answer)](std::string text) {
+                         boost::asio::post(io_, [answer, text = std::move(text)] { answer(text); });
+                       });
+                     }}),
       watchdog_(io_, runtime::Notify::watchdog_interval(), watched_parts(),
                 {.feed = [this] { notify_.alive(); },
                  .hanging =

@@ -109,6 +109,8 @@ class App {
   void stop(const std::string& why);
   void leave_when_idle();
   void tell_status();
+  /// status() for those who ask again and again: the next one has what changed in the history of the tester.
+  [[nodiscard]] daemon::Status asked_status();
   [[nodiscard]] std::string status_line() const;
   [[nodiscard]] std::string state_line() const;  ///< As status_line(), without the storage.
   /// Real-time settings in force; valid while there is a session.

@@ -106,6 +106,11 @@ daemon::ScanAccount App::scan_account() const {
   return account;
 }
 
+daemon::Status App::asked_status() {
+  charts_.look();
+  return status();
+}
+
 daemon::Status App::status() const {
   daemon::Status status;
   status.state = name(state_);

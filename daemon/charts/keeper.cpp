@@ -5,6 +5,7 @@
 #include <future>
 #include <utility>
 
+#include "io/json_text.hpp"
 #include "io/own_records.hpp"
 #include <boost/asio/post.hpp>
 
@@ -45,6 +46,22 @@ void Keeper::settle() {
 void Keeper::close() {
   closing_ = true;
   pool_.join();
+}
+
+void Keeper::look() {
+  if (looking_.exchange(true)) return;
+  post([this] {
+    looking_ = false;
+    evaluate();
+  });
+}
+
+void Keeper::ask(std::function<void(std::string)> answer) {
+  post([this] { evaluate(); });
+  // Whatever became of that: its trouble is in the state.
+  post([this, answer = std::move(answer)] {
+    answer(io::json_text(daemon::trend_course_json(charts_, state_)));
+  });
 }
 
 daemon::TrendState Keeper::state() const {

@@ -56,6 +56,12 @@ class Keeper {
   void close();
 
   [[nodiscard]] daemon::TrendState state() const;
+  /// Reads what others appended to the history and the batches, such as a restart or a voiding; does not
+  /// block.
+  void look();
+  /// The same, and then gives the charts as daemon::trend_course_json() writes them. \param answer  called on
+  /// the thread inside.
+  void ask(std::function<void(std::string)> answer);
 
  private:
   /// Does it on the thread inside; what it throws is a trouble.
@@ -79,6 +85,7 @@ class Keeper {
   mutable std::mutex mutex_;
   daemon::TrendState state_;  ///< Guarded by mutex_.
   std::atomic<bool> closing_{false};
+  std::atomic<bool> looking_{false};  ///< A look() waits for its turn.
   boost::asio::thread_pool pool_{1};
 };
 

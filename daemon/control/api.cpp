@@ -16,7 +16,7 @@
 #include "daemon/control/calibration_api.hpp"
 #include "daemon/control/metrics.hpp"
 #include "daemon/control/openapi.hpp"
-#include "daemon/control/record_request.hpp"
+#include "daemon/control/records_api.hpp"
 #include "daemon/control/repeats.hpp"
 #include "daemon/control/report_api.hpp"
 #include "daemon/control/request_body.hpp"
@@ -85,7 +85,7 @@ class Api {
     bool changes;
     Function function;
   };
-  static const std::array<Route, 30> kRoutes;
+  static const std::array<Route, 32> kRoutes;
 
   static std::optional<std::string> match(const Route& route, const std::string& path) {
     if (!route.path.ends_with('/')) return path == route.path ? std::optional<std::string>{""} : std::nullopt;
@@ -208,7 +208,9 @@ class Api {
     if (error == std::errc{} && stopped == end) {
       for (const daemon::TestSummary& test : tests) {
         if (test.number != number) continue;
-        if (trace) return answer_trace(request, test, voided(test), bench_.reports(), answer);
+        if (trace)
+          return answer_trace(request, test.file, without_trace(test, voided(test)), bench_.reports(),
+                              answer);
         return answer(daemon::reply_of(described(test, true)));
       }
       if (trace && bench_.status().current_test == number)
@@ -218,8 +220,15 @@ class Api {
     answer(daemon::refusal(404, no_such_test(printable(named), tests)));
   }
 
-  void record(const daemon::HttpRequest&, const std::string& rest, const daemon::HttpAnswer& answer) {
-    answer(record_reply(rest, bench_.tests()));
+  void trend(const daemon::HttpRequest&, const std::string&, const daemon::HttpAnswer& answer) {
+    bench_.trend([answer](std::string text) { answer({200, std::move(text), {}}); });
+  }
+
+  void records(const daemon::HttpRequest& request, const std::string&, const daemon::HttpAnswer& answer) {
+    answer_search(request, bench_.reports(), answer);
+  }
+  void record(const daemon::HttpRequest& request, const std::string& rest, const daemon::HttpAnswer& answer) {
+    answer_record(request, rest, bench_, answer);
   }
 
   void plan(const daemon::HttpRequest&, const std::string&, const daemon::HttpAnswer& answer) {
@@ -451,12 +460,14 @@ class Api {
   Repeats repeats_;
 };
 
-const std::array<Api::Route, 30> Api::kRoutes{{
+const std::array<Api::Route, 32> Api::kRoutes{{
     {"GET", "/v1/status", false, &Api::status},
     {"GET", "/v1/openapi.json", false, &Api::description},
     {"GET", "/v1/tests", false, &Api::tests},
     {"GET", "/v1/tests/", false, &Api::test},
+    {"GET", "/v1/records", false, &Api::records},
     {"GET", "/v1/records/", false, &Api::record},
+    {"GET", "/v1/trend", false, &Api::trend},
     {"GET", "/v1/plan", false, &Api::plan},
     {"PUT", "/v1/plan", true, &Api::set_plan},
     {"GET", "/v1/batch", false, &Api::batch},

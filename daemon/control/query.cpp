@@ -10,12 +10,10 @@
 #include <boost/algorithm/string/classification.hpp>
 #include <boost/algorithm/string/split.hpp>
 
+#include "core/base/quantity.hpp"
 #include "daemon/control/request_body.hpp"
 
 namespace stickslip::control {
-namespace {
-
-/// "%2C" is a comma [RFC 3986, section 2.1]. nullopt if two hexadecimal digits do not follow each "%".
 std::optional<std::string> decoded(std::string_view value) {
   std::string text;
   for (std::size_t at = 0; at < value.size(); ++at) {
@@ -32,8 +30,6 @@ std::optional<std::string> decoded(std::string_view value) {
   }
   return text;
 }
-
-}  // namespace
 
 base::Result<Query> query_of(const std::string& target, std::initializer_list<std::string_view> keys) {
   Query query;
@@ -56,6 +52,18 @@ base::Result<Query> query_of(const std::string& target, std::initializer_list<st
       return base::usage_error("{}: stands there twice; send it once", key);
   }
   return query;
+}
+
+base::Result<std::size_t> count_in(const Query& query, const std::string& key, std::size_t usual,
+                                   std::size_t most) {
+  const auto asked = query.find(key);
+  if (asked == query.end()) return usual;
+  const base::Result<double> count = base::parse_number(asked->second);
+  if (count && *count >= 1.0 && *count <= static_cast<double>(most) &&
+      *count == static_cast<double>(static_cast<std::size_t>(*count)))
+    return static_cast<std::size_t>(*count);
+  return base::usage_error("{}: must be a whole number from 1 to {}, not {}", key, most,
+                           printable(asked->second));
 }
 
 }  // namespace stickslip::control

@@ -108,6 +108,15 @@ void answer_report(const daemon::HttpRequest& request, const std::string& rest, 
   reports.make(std::array{reported(*batch)}, form->form, *pool, reply_with_report(*form, answer));
 }
 
+void answer_record_report(const daemon::HttpRequest& request, const std::filesystem::path& record,
+                          daemon::Reports& reports, const daemon::HttpAnswer& answer) {
+  const auto query = query_of(request.target, {"format"});
+  if (!query) return answer(daemon::refusal(400, query.error().message));
+  const auto form = form_of(*query);
+  if (!form) return answer(daemon::refusal(400, form.error().message));
+  reports.report(record, form->form, reply_with_report(*form, answer));
+}
+
 void answer_comparison(const daemon::HttpRequest& request, const daemon::BatchBook& book,
                        daemon::Reports& reports, const daemon::HttpAnswer& answer) {
   const auto query = query_of(request.target, {"a", "b", "format", "pool"});

@@ -1,7 +1,8 @@
 /// \file
-/// The requests for all batches, for the report on one and for the comparison of two.
+/// The requests for all batches, for the report on one or on a record, and for the comparison of two.
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include <nlohmann/json_fwd.hpp>
@@ -22,6 +23,10 @@ inline constexpr std::size_t kMostListed = 1000;
 /// journal.
 void answer_report(const daemon::HttpRequest& request, const std::string& rest, const daemon::BatchBook& book,
                    daemon::Reports& reports, const daemon::HttpAnswer& answer);
+
+/// GET /v1/records/NAME/report?format=html|csv|json.
+void answer_record_report(const daemon::HttpRequest& request, const std::filesystem::path& record,
+                          daemon::Reports& reports, const daemon::HttpAnswer& answer);
 
 /// GET /v1/compare?a=ID&b=ID&format=html|csv|json.
 void answer_comparison(const daemon::HttpRequest& request, const daemon::BatchBook& book,

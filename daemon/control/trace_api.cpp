@@ -24,21 +24,10 @@ base::Result<std::optional<double>> time_in(const Query& query, const char* key)
                            printable(asked->second));
 }
 
-base::Result<std::size_t> points_in(const Query& query) {
-  const auto asked = query.find("points");
-  if (asked == query.end()) return daemon::kUsualTracePoints;
-  const base::Result<double> points = base::parse_number(asked->second);
-  if (points && *points >= 1.0 && *points <= static_cast<double>(daemon::kMostTracePoints) &&
-      *points == static_cast<double>(static_cast<std::size_t>(*points)))
-    return static_cast<std::size_t>(*points);
-  return base::usage_error("points: must be a whole number from 1 to {}, not {}", daemon::kMostTracePoints,
-                           printable(asked->second));
-}
-
 base::Result<daemon::TraceRequest> trace_request(const std::string& target) {
   const auto query = query_of(target, {"points", "from", "to"});
   if (!query) return tl::unexpected(query.error());
-  const auto points = points_in(*query);
+  const auto points = count_in(*query, "points", daemon::kUsualTracePoints, daemon::kMostTracePoints);
   if (!points) return tl::unexpected(points.error());
   const auto from_s = time_in(*query, "from");
   if (!from_s) return tl::unexpected(from_s.error());
@@ -49,25 +38,26 @@ base::Result<daemon::TraceRequest> trace_request(const std::string& target) {
   return daemon::TraceRequest{.record = {}, .points = *points, .from_s = *from_s, .to_s = *to_s};
 }
 
-/// Why a test has no trace; empty: it has a record.
+}  // namespace
+
+std::string void_refusal(const std::string& what, const daemon::Voiding& voided) {
+  return fmt::format("{} is void: {}; its record stays as it is: save it, or POST /v1/restore first", what,
+                     voided.reason);
+}
+
 std::string without_trace(const daemon::TestSummary& test, const daemon::Voiding* voided) {
-  if (voided != nullptr)
-    return fmt::format("test {} is void: {}; its record stays as it is: save it, or POST /v1/restore first",
-                       test.number, voided->reason);
+  if (voided != nullptr) return void_refusal(fmt::format("test {}", test.number), *voided);
   if (!test.file.empty()) return {};
   if (!test.file_error.empty()) return fmt::format("test {} has no record: {}", test.number, test.file_error);
   return fmt::format("the record of test {} is being written; ask again in a moment", test.number);
 }
 
-}  // namespace
-
-void answer_trace(const daemon::HttpRequest& request, const daemon::TestSummary& test,
-                  const daemon::Voiding* voided, daemon::Reports& reports, const daemon::HttpAnswer& answer) {
+void answer_trace(const daemon::HttpRequest& request, const std::filesystem::path& record,
+                  const std::string& why_not, daemon::Reports& reports, const daemon::HttpAnswer& answer) {
   base::Result<daemon::TraceRequest> asked = trace_request(request.target);
   if (!asked) return answer(daemon::refusal(400, asked.error().message));
-  if (const std::string why = without_trace(test, voided); !why.empty())
-    return answer(daemon::refusal(409, why));
-  asked->record = test.file;
+  if (!why_not.empty()) return answer(daemon::refusal(409, why_not));
+  asked->record = record;
   reports.trace(*asked,
                 [answer](base::Result<std::string> text) { answer(daemon::reply_with(std::move(text))); });
 }

@@ -73,21 +73,7 @@ const Batch = (() => {
   });
   part("void-close").addEventListener("click", () => part("void-dialog").close());
 
-  // Two fields for each result of the table.
-  part("batch-limits").querySelector("div").replaceChildren(...Tables.columns.map(([name, label]) => {
-    const box = document.createElement("fieldset"), legend = document.createElement("legend");
-    legend.textContent = label;
-    box.append(legend, ...["lowest", "highest"].map(side => {
-      const said = document.createElement("label"), field = document.createElement("input");
-      said.textContent = name === kWithUnit ? `${side}, with unit` : side;
-      if (name === kWithUnit) field.placeholder = "1 Hz"; else field.type = "number";
-      field.step = "any";
-      field.name = `${name}.${side}`;
-      said.append(field);
-      return said;
-    }));
-    return box;
-  }));
+  part("batch-limits").querySelector("div").replaceChildren(...Tables.ranges(kWithUnit));
 
   // Empty fields use the method's values, else the daemon's.
   function asked() {

@@ -96,5 +96,5 @@ const Chart = (() => {
   const range = (low, high) => (low === high ? number(low, 4) : `${number(low, 4)} … ${number(high, 4)}`);
   const height = part => Math.round(Math.max(90, window.innerHeight * part));
 
-  return {colour, paint, line, make, bands, shade, peaks, lines, tell, number, range, height};
+  return {colour, paint, axis, line, make, bands, shade, peaks, lines, tell, number, range, height};
 })();

@@ -96,7 +96,10 @@
   Tare.connect(ask, refresh);
   Calibrate.connect(ask);
   Batch.connect(ask, say, refresh);
-  Batches.connect(ask, fetched, download);
+  Shown.connect(fetched, download);
+  Batches.connect(ask);
+  Records.connect(ask, download);
+  Trend.connect(ask);
   Trace.connect(ask);
   Lease.connect(ask, send, say);
   const plan = document.getElementById("plan");
@@ -161,6 +164,7 @@
     "test-ended": frame => { Scope.ended(frame); Answer.ended(frame); attempt(refresh); },
     health(frame) {
       Tables.health(frame.status);
+      Trend.health(frame.status);
       Tare.health(frame.status);
       Calibrate.health(frame.status);
       Batch.health(frame.status);
@@ -189,6 +193,7 @@
     try {
       const status = await ask("GET", "/v1/status");
       Tables.health(status);
+      Trend.health(status);
       Answer.health(status);
       fillPlan(await ask("GET", "/v1/plan"), true);
       await Lease.back(status);

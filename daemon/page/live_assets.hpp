@@ -19,7 +19,10 @@ namespace stickslip::page {
 [[nodiscard]] std::string_view calibrate_js() noexcept;
 [[nodiscard]] std::string_view lease_js() noexcept;
 [[nodiscard]] std::string_view batch_js() noexcept;
+[[nodiscard]] std::string_view shown_js() noexcept;
 [[nodiscard]] std::string_view batches_js() noexcept;
+[[nodiscard]] std::string_view records_js() noexcept;
+[[nodiscard]] std::string_view trend_js() noexcept;
 [[nodiscard]] std::string_view shown_html() noexcept;
 
 }  // namespace stickslip::page

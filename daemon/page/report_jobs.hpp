@@ -1,6 +1,6 @@
 /// \file
-/// Makes reports and reads traces, one of each at a time, in a child process, because errors of HDF5 can end
-/// a process and the daemon must go on measuring.
+/// Makes reports, reads traces and searches records, one of each at a time, in a child process, because
+/// errors of HDF5 can end a process and the daemon must go on measuring.
 #pragma once
 
 #include <chrono>
@@ -41,6 +41,9 @@ class ReportJobs final : public daemon::Reports {
   void make(std::span<const daemon::ReportedBatch> batches, daemon::ReportForm form, std::string_view pool,
             Answer answer) override;
   void trace(const daemon::TraceRequest& request, Answer answer) override;
+  void report(const std::filesystem::path& record, daemon::ReportForm form, Answer answer) override;
+  void find(const daemon::RecordSearch& search, Answer answer) override;
+  [[nodiscard]] base::Result<std::filesystem::path> record(const std::string& name) const override;
 
  private:
   struct Job;
@@ -49,14 +52,18 @@ class ReportJobs final : public daemon::Reports {
     std::string_view what;
     std::string_view if_slow;    ///< What helps where it took too long.
     std::string_view if_large;   ///< What helps where it is too large.
+    std::size_t largest;         ///< Most bytes of a file that the child writes; 0: no limit.
+    int status_of_nothing = 0;   ///< Exit status of the child if its answer is whole but empty.
     std::unique_ptr<Job> job{};  ///< Null: none is under way.
   };
-  void start(Slot& slot, std::vector<std::string> arguments, Answer answer);
+  void start(Slot& slot, std::vector<std::string> arguments, Answer answer,
+             std::vector<std::string> variables = {});
   void ended(Slot& slot);
 
   Parts parts_;
   Slot reports_;
   Slot traces_;
+  Slot searches_;
 };
 
 }  // namespace stickslip::page

@@ -49,7 +49,10 @@ std::vector<Asset> assets_with(const report::ChartLibrary& charts) {
       {"/page/calibrate.js", kScript, text(calibrate_js())},
       {"/page/lease.js", kScript, text(lease_js())},
       {"/page/batch.js", kScript, text(batch_js())},
+      {"/page/shown.js", kScript, text(shown_js())},
       {"/page/batches.js", kScript, text(batches_js())},
+      {"/page/records.js", kScript, text(records_js())},
+      {"/page/trend.js", kScript, text(trend_js())},
       {"/page/report", kPage, text(shown_html()), kReportPolicy},
       {"/page/uplot.js", kScript, charts.script},
   };

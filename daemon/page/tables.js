@@ -18,6 +18,13 @@ const Tables = (() => {
 
   const speed = value => `${Number((value * 1000).toPrecision(6))} mm/s`;
 
+  /// By the clock of this browser.
+  function minute(time) {
+    if (time == null) return "no date";
+    const at = new Date(time), two = number => String(number).padStart(2, "0");
+    return `${at.getFullYear()}-${two(at.getMonth() + 1)}-${two(at.getDate())} ${two(at.getHours())}:${two(at.getMinutes())}`;
+  }
+
   // A word, a shape and a colour: any one of them tells.
   const shapes = {circle: "M10 2a8 8 0 1 0 .01 0z", ring: "M10 2a8 8 0 1 0 .01 0zM10 6a4 4 0 1 1-.01 0z", triangle: "M10 2 19 18H1z", square: "M2 2h16v16H2z",
     bars: "M3 2h5v16H3zM12 2h5v16h-5z", cross: "M4 1l6 6 6-6 3 3-6 6 6 6-3 3-6-6-6 6-3-3 6-6-6-6z", diamond: "M10 1l9 9-9 9-9-9z", lozenge: "M10 1l9 9-9 9-9-9zM10 6l-4 4 4 4 4-4z", wave: "M1 12 6 3l5 12 4-8 4 6v5l-4-5-5 8L6 8l-5 9z"};
@@ -34,25 +41,46 @@ const Tables = (() => {
   // A link for the keyboard and the eye; what it does needs the token, which an address must not carry.
   function recordCell(test, download) {
     if (!test.file) return cell(test.file_error || "…", "text");
-    const td = cell("", "text"), link = document.createElement("a"), name = test.file.split("/").pop();
-    link.textContent = name;
-    link.id = `record-${test.number}`;
-    link.href = `/v1/records/${encodeURIComponent(name)}`;
-    link.addEventListener("click", event => { event.preventDefault(); download(link.pathname, name); });
-    td.append(link);
-    return td;
+    return cell([recordLink(`record-${test.number}`, base(test.file), download)], "text");
+  }
+  const base = path => path.split("/").pop();
+  const recordPath = record => `/v1/records/${record.split("/").map(encodeURIComponent).join("/")}`;
+  function recordLink(id, record, download) {
+    const link = document.createElement("a");
+    link.textContent = base(record);
+    link.id = id;
+    link.href = recordPath(record);
+    link.addEventListener("click", event => { event.preventDefault(); download(link.pathname, base(record)); });
+    return link;
   }
   // By a click anywhere in the row but on what does something else, and by keyboard on its number.
-  function traced(test, tr) {
+  /// \param of  as Trace.open(). \param text  of the first cell, which becomes a button.
+  function traced(of, text, tr) {
     const button = document.createElement("button");
-    button.type = "button"; button.className = "link"; button.id = `trace-${test.number}`; button.textContent = String(test.number);
-    button.setAttribute("aria-label", `trace of test ${test.number}`);
+    button.type = "button"; button.className = "link"; button.id = `trace-${of}`; button.textContent = text;
+    button.setAttribute("aria-label", `trace of ${Trace.named(of)}`);
     button.setAttribute("aria-haspopup", "dialog");
-    button.addEventListener("click", () => Trace.open(test.number));
+    button.addEventListener("click", () => Trace.open(of));
     tr.cells[0].replaceChildren(button);
-    tr.addEventListener("click", event => { if (event.target.closest("button, a, input") == null && getSelection().isCollapsed) Trace.open(test.number); });
+    tr.addEventListener("click", event => { if (event.target.closest("button, a, input") == null && getSelection().isCollapsed) Trace.open(of); });
   }
   const limitText = ({lowest, highest}, digits) => (lowest == null ? `≤ ${fixed(highest, digits)}` : highest == null ? `≥ ${fixed(lowest, digits)}` : `${fixed(lowest, digits)} … ${fixed(highest, digits)}`);
+
+  /// Two fields for each result of the table: `mu_s.lowest`, `mu_s.highest`. \param withUnit  the result that is typed as text with its unit; absent: none.
+  const ranges = withUnit => columns.map(([name, label]) => {
+    const box = document.createElement("fieldset"), legend = document.createElement("legend");
+    legend.textContent = label;
+    box.append(legend, ...["lowest", "highest"].map(side => {
+      const said = document.createElement("label"), field = document.createElement("input");
+      said.textContent = name === withUnit ? `${side}, with unit` : side;
+      if (name === withUnit) field.placeholder = "1 Hz"; else field.type = "number";
+      field.step = "any";
+      field.name = `${name}.${side}`;
+      said.append(field);
+      return said;
+    }));
+    return box;
+  });
 
   const severities = ["fault", "warning", "note"];
   /// Of the latest test, below its answer; the most severe first.
@@ -105,7 +133,7 @@ const Tables = (() => {
       const found = test.results.coded_findings;
       if (found.length > 0) regimeCell.append(` · ${found[0].code}${found.length > 1 ? ` + ${found.length - 1}` : ""}`);
       regimeCell.title = [`rung: ${test.results.rung}`, ...found.map(finding => finding.text)].join("\n");
-      traced(test, tr);
+      traced(test.number, String(test.number), tr);
       if (test.voided) tr.classList.add("void");
       if (place) tr.classList.add("own");
       return tr;
@@ -200,5 +228,5 @@ const Tables = (() => {
   /// Asks where the sled of the bench is outside what a tester has.
   const sledMeant = async doing => sled == null || confirm("Is this the sled?", `${sled}. Every coefficient is divided by its weight. Correct sled_mass under [tester] in the configuration, or go on.`, [], doing);
 
-  return {confirm, sledMeant, terms, cell, row, speed, badge, bench, regime, trouble, tests, lacks: () => lacking, health, cycle, columns};
+  return {confirm, sledMeant, terms, cell, row, speed, minute, base, recordPath, recordLink, traced, ranges, badge, bench, regime, trouble, tests, lacks: () => lacking, health, cycle, columns};
 })();

@@ -9,7 +9,7 @@ const Trace = (() => {
   const kOthers = "others", kReference = "reference";  // A choice of "compare with"; where the tab keeps the file of the reference.
   const part = id => document.getElementById(`trace-${id}`), dialog = part("dialog"), box = part("chart"), other = part("other");
   let ask = null;
-  let number = null;   // Of the test that is shown.
+  let number = null;   // Of the test that is shown, or the name of the record.
   let shown = [];      // [{number, trace, slips}] of it and of those that are laid over it, as the chart has them.
   let view = null;     // [from, to] in view, s; null: the whole trace.
   let recorded = [];   // Every test with a record that counts.
@@ -25,6 +25,9 @@ const Trace = (() => {
     part("reference").checked = reference != null && reference.number === number;
     part("reference").disabled = opened() == null;  // It has no trace.
   }
+  // A test by its number, or any record by its name from the record folder on.
+  const isTest = of => typeof of === "number";
+  const named = of => (isTest(of) ? `test ${of}` : Tables.base(of));
   const opened = () => recorded.find(one => one.number === number);
   const others = () => listed.filter(one => one.number !== number);
   /// Numbers of the tests that were chosen to lie over it.
@@ -38,13 +41,13 @@ const Trace = (() => {
     peak_time: time, peak: trace.cycles.peak[k], captured: trace.cycles.captured[k]}));
   // Of more than two tests the first's alone: names of many would lie on one another.
   const levels = () => (shown.length > 2 ? shown.slice(0, 1) : shown).flatMap(({number: of, trace}, at) => {
-    const name = letter => (shown.length > 1 ? `${letter}, test ${of}` : letter), [s, k, side] = at === 0 ? ["--static", "--kinetic", "left"] : ["--other", "--other", "right"];
+    const name = letter => (shown.length > 1 ? `${letter}, ${named(of)}` : letter), [s, k, side] = at === 0 ? ["--static", "--kinetic", "left"] : ["--other", "--other", "right"];
     return [[name("S"), trace.mu_s, s, side], [name("K"), trace.mu_k, k, side]];
   });
   // Each at its own nearest bin: tests of other lengths have other bins.
   const under = u => shown.slice(0, shown.length > 2 ? 1 : 2).map(({number: of}, at) => {
     const k = u.cursor.idxs[low(at)];
-    return `${shown.length > 1 ? `test ${of} ` : ""}${k == null ? "–" : Chart.range(u.data[low(at)][k], u.data[low(at) + 1][k])}`;
+    return `${shown.length > 1 ? `${named(of)} ` : ""}${k == null ? "–" : Chart.range(u.data[low(at)][k], u.data[low(at) + 1][k])}`;
   }).join(", ");
 
   function build() {
@@ -84,7 +87,7 @@ const Trace = (() => {
     const span = view == null ? "" : `&from=${Math.max(0, view[0] - margin).toFixed(6)}&to=${(view[1] + margin).toFixed(6)}`;
     for (;;) {
       try {
-        return await ask("GET", `/v1/tests/${of}/trace?points=${Math.max(200, box.clientWidth)}${span}`);
+        return await ask("GET", `${isTest(of) ? `/v1/tests/${of}` : Tables.recordPath(of)}/trace?points=${Math.max(200, box.clientWidth)}${span}`);
       } catch (error) {
         if (error.status !== 503 || !dialog.open) throw error;
         part("message").textContent = error.message;
@@ -141,13 +144,13 @@ const Trace = (() => {
     number = of;
     view = null;
     shown = [];
-    part("title").textContent = `Trace of test ${of}`;
-    const named = one => [one.number, `${one === reference ? "reference: " : ""}test ${one.number}, ${one.results.regime}`];
+    part("title").textContent = `Trace of ${named(of)}`;
+    const choice = one => [one.number, `${one === reference ? "reference: " : ""}test ${one.number}, ${one.results.regime}`];
     const first = reference == null || reference.number === of ? [] : [reference], rest = others().filter(one => one !== reference);
     const own = opened(), mates = own != null && inBatch?.(own) ? others().filter(inBatch) : [];
     offered = mates.slice(0, kOver).map(one => one.number);
     const batch = mates.length === 0 ? [] : [[kOthers, mates.length > kOver ? `the latest ${kOver} others of its batch` : "all others of its batch"]];
-    other.replaceChildren(...[["", "no other test"], ...first.map(named), ...batch, ...rest.map(named)].map(([value, text]) => {
+    other.replaceChildren(...[["", "no other test"], ...first.map(choice), ...batch, ...rest.map(choice)].map(([value, text]) => {
       const option = document.createElement("option");
       option.value = value; option.textContent = text;
       return option;
@@ -189,7 +192,9 @@ const Trace = (() => {
       listed = (inBatch == null ? recorded : recorded.filter(inBatch)).slice(-100).reverse();
       refer();
     },
+    /// \param of  as named().
     open,
+    named,
     levels,
     shown: () => ({number, view: inView(), tests: shown, chart}),
   };

@@ -28,6 +28,7 @@ class CommandService final : public daemon::Bench {
     std::function<void(std::function<void()>)> on_main;  ///< Runs a function on the main thread. Any thread.
     daemon::Batches* batches;
     daemon::Reports* reports;
+    std::function<void(std::function<void(std::string)>)> trend;  ///< As Bench::trend().
   };
   explicit CommandService(Parts parts) : parts_(std::move(parts)), configured_method_(parts_.config.method) {}
 
@@ -45,6 +46,7 @@ class CommandService final : public daemon::Bench {
   [[nodiscard]] daemon::Calibrator& calibrator() override { return parts_.calibrations; }
   [[nodiscard]] daemon::Batches& batches() override { return *parts_.batches; }
   [[nodiscard]] daemon::Reports& reports() override { return *parts_.reports; }
+  void trend(std::function<void(std::string)> answer) override { parts_.trend(std::move(answer)); }
 
  private:
   /// Why the command is refused at once; nothing: the processing thread decides.

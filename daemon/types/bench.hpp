@@ -64,6 +64,9 @@ class Bench {
   [[nodiscard]] virtual Batches& batches() = 0;
   /// Lives as long as this object.
   [[nodiscard]] virtual Reports& reports() = 0;
+  /// Gives the control charts of the tester, with what was changed in their files until now, as
+  /// trend_course_json() writes them; does not block. \param answer  called once, on the main thread.
+  virtual void trend(std::function<void(std::string)> answer) = 0;
 };
 
 }  // namespace stickslip::daemon

@@ -22,13 +22,20 @@ namespace stickslip::daemon {
   return {status, io::json_text({{"error", why}}), std::move(allow)};
 }
 
-/// The text that a child process made, or why there is none: 503 if it is to be asked for later, else 409.
+/// The text that a child process made, or why there is none: 400 if the request is wrong, 503 if it is to be
+/// asked for later, else 409.
 [[nodiscard]] inline HttpReply reply_with(base::Result<std::string> text,
                                           const char* content_type = "application/json") {
+  constexpr int kWrong = 400;
   constexpr int kConflict = 409;
   constexpr int kLater = 503;
-  if (!text)
-    return refusal(text.error().kind == base::ErrorKind::kBusy ? kLater : kConflict, text.error().message);
+  if (!text) {
+    const base::ErrorKind kind = text.error().kind;
+    return refusal(kind == base::ErrorKind::kBusy    ? kLater
+                   : kind == base::ErrorKind::kUsage ? kWrong
+                                                     : kConflict,
+                   text.error().message);
+  }
   HttpReply reply{200, *std::move(text), {}};
   reply.content_type = content_type;
   return reply;

@@ -1,5 +1,5 @@
 /// \file
-/// Interface between the control interface and what is made of records: reports on batches, traces of tests.
+/// Interface between the control interface and what is made of records: reports, traces, searches.
 #pragma once
 
 #include <cstddef>
@@ -9,6 +9,8 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "core/base/result.hpp"
 
@@ -34,6 +36,17 @@ struct TraceRequest {
   std::optional<double> to_s{};
 };
 
+/// Most records that a search may give; records if the client says nothing.
+inline constexpr std::size_t kMostFound = 1000;
+inline constexpr std::size_t kUsualFound = 100;
+
+/// A search in the record folder: the newest records that meet all conditions.
+struct RecordSearch {
+  /// Options of `stickslip find`, without dashes, and their values.
+  std::vector<std::pair<std::string, std::string>> conditions;
+  std::size_t most = kUsualFound;
+};
+
 enum class ReportForm { kPage, kCsv, kJson };
 
 /// Main thread.
@@ -52,6 +65,14 @@ class Reports {
   /// Reads the trace of a record, as report::binned_trace_json(); does not block, nor waits for a report.
   /// \param answer  as of make().
   virtual void trace(const TraceRequest& request, Answer answer) = 0;
+  /// Makes the report on one record, as make() does.
+  virtual void report(const std::filesystem::path& record, ReportForm form, Answer answer) = 0;
+  /// Searches the records, as `stickslip find --json`; does not block, nor waits for a report. \param answer
+  /// as of make(); also kUsage if a condition is wrong.
+  virtual void find(const RecordSearch& search, Answer answer) = 0;
+  /// Path of a record by its name from the record folder on, as find() gives it. Errors: kUsage if there is
+  /// none.
+  [[nodiscard]] virtual base::Result<std::filesystem::path> record(const std::string& name) const = 0;
 };
 
 }  // namespace stickslip::daemon

@@ -12,6 +12,7 @@
 #include "core/base/wording.hpp"
 #include "core/record/iso_time.hpp"
 #include "core/record/journal_format.hpp"
+#include "daemon/types/batch_journal.hpp"
 #include "daemon/types/quantity_json.hpp"
 
 namespace stickslip::daemon {
@@ -218,6 +219,14 @@ trend::TesterCharts TesterHistory::charts(const BatchBook& book,
   trend::TesterCharts charts{reference.value_or(reference_)};
   for (const HistoryEvent& event : events_) apply(event, book, charts);
   return charts;
+}
+
+base::Result<trend::TesterCharts> charts_now(const TesterHistory& history,
+                                             const std::optional<std::string>& reference) {
+  BatchJournal batches{history.path().parent_path()};
+  BatchBook book;
+  if (const auto read = batches.read_on(book); !read) return tl::unexpected(read.error());
+  return history.charts(book, reference);
 }
 
 std::vector<trend::Quantity> apply(const HistoryEvent& event, const BatchBook& book,

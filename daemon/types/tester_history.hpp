@@ -114,6 +114,11 @@ class TesterHistory {
   std::string reference_;
 };
 
+/// The charts of a history that was read, without the tests that are void now by the batches of its folder.
+/// Errors: as BatchJournal::read_on(). \param reference  as of TesterHistory::charts().
+[[nodiscard]] base::Result<trend::TesterCharts> charts_now(const TesterHistory& history,
+                                                           const std::optional<std::string>& reference = {});
+
 /// Applies an event to the charts. \return the quantities that it newly alarms.
 std::vector<trend::Quantity> apply(const HistoryEvent& event, const BatchBook& book,
                                    trend::TesterCharts& charts);

@@ -61,4 +61,26 @@ Json trend_json(const TrendState& state) {
           {"trouble", io::or_null(state.trouble)}};
 }
 
+Json trend_course_json(const trend::TesterCharts& charts, const TrendState& state) {
+  Json json = trend_json(state);
+  json["reference_value"] = trend::kReferenceValue;
+  json["decision_interval"] = trend::kDecisionInterval;
+  for (std::size_t i = 0; i < state.charts.size(); ++i) {
+    Json points{{"time", Json::array()},
+                {"file", Json::array()},
+                {"value", Json::array()},
+                {"upper", Json::array()},
+                {"lower", Json::array()}};
+    for (const trend::ChartPoint& point : charts.state(state.charts[i].quantity).points) {
+      points["time"].push_back(point.time);
+      points["file"].push_back(point.file);
+      points["value"].push_back(point.value);
+      points["upper"].push_back(point.upper);
+      points["lower"].push_back(point.lower);
+    }
+    json["charts"][i]["points"] = std::move(points);
+  }
+  return json;
+}
+
 }  // namespace stickslip::daemon

@@ -37,6 +37,13 @@ struct TrendState {
 
 [[nodiscard]] TrendState trend_state(const trend::TesterCharts& charts);
 
+/// The same with what draws the charts: {"decision_interval": 7.0, …, "charts": [{"chart": "zero", …,
+/// "points":
+/// {"time": […], "file": […], "value": […], "upper": […], "lower": […]}}]}.
+/// \param state  of these charts.
+[[nodiscard]] nlohmann::ordered_json trend_course_json(const trend::TesterCharts& charts,
+                                                       const TrendState& state);
+
 /// {"reference": …, "charts": [{"chart": "zero", "unit": "N", "verdict": "in control", …}], "trouble": null}
 [[nodiscard]] nlohmann::ordered_json trend_json(const TrendState& state);
 

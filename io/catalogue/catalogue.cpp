@@ -150,6 +150,7 @@ void follow_and_find(const std::string& index_path, const fs::path& folder, cons
   Index index{index_path};
   Follower{index, folder, progress}.follow(found);
   found.entries = index.find(query);
+  found.match_count = query.most ? index.count(query) : found.entries.size();
   found.unread = index.unread();
 }
 

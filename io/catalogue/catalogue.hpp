@@ -27,6 +27,7 @@ struct Followed {
 
 struct Found {
   std::vector<Entry> entries;
+  std::size_t match_count = 0;  ///< Records that meet the conditions: entries, and those beyond Query::most.
   std::vector<UnreadFile> unread;                ///< Of the whole tree, whatever the conditions are.
   std::vector<io::UnreadFolder> unread_folders;  ///< Their records are missing here.
   Followed followed;

@@ -162,6 +162,16 @@ Entry entry_in(const Statement& row) {
   return entry;
 }
 
+/// What is asked of the records that meet the conditions, with the values to bind.
+Condition chosen(const std::string& columns, const Query& query) {
+  Condition all{fmt::format("SELECT {} FROM record JOIN file USING(id) WHERE 1", columns), {}};
+  for (const Condition& condition : query.conditions) {
+    all.sql += " AND (" + condition.sql + ")";
+    all.values.insert(all.values.end(), condition.values.begin(), condition.values.end());
+  }
+  return all;
+}
+
 }  // namespace
 
 Index::Index(const std::string& path)
@@ -230,22 +240,28 @@ void Index::put_unread(const UnreadFile& file, const Signature& signature) { put
 void Index::remove(const std::string& file) { remove_.run({Bytes{file}}); }
 
 std::vector<Entry> Index::find(const Query& query) {
-  std::string sql = fmt::format("SELECT path, {}{} FROM record JOIN file USING(id) WHERE 1", kFactColumns,
-                                result_columns_sql(""));
-  std::vector<Value> values;
-  for (const Condition& condition : query.conditions) {
-    sql += " AND (" + condition.sql + ")";
-    values.insert(values.end(), condition.values.begin(), condition.values.end());
-  }
-  const std::string order = query.order.empty() ? "start_ns" : query.order;
-  sql += fmt::format(" ORDER BY nullif(\"{0}\", '') IS NULL, \"{0}\"{1}, path{1} LIMIT ?", order,
-                     query.reversed ? " DESC" : "");
+  const std::string column = query.order.empty() ? "start_ns" : query.order;
+  const std::string order = fmt::format(" ORDER BY nullif(\"{0}\", '') IS NULL, \"{0}\"{1}, path{1}", column,
+                                        query.reversed ? " DESC" : "");
+  // Which ones first: to sort whole rows takes thrice as long.
+  auto [which, values] = chosen("id", query);
   values.emplace_back(query.most.value_or(-1));
+  const std::string sql =
+      fmt::format("SELECT path, {}{} FROM record JOIN file USING(id) WHERE id IN ({}{} LIMIT ?){}",
+                  kFactColumns, result_columns_sql(""), which, order, order);
   Statement rows = database_.prepare(sql);
   rows.bind(values);
   std::vector<Entry> entries;
   while (rows.step()) entries.push_back(entry_in(rows));
   return entries;
+}
+
+std::size_t Index::count(const Query& query) {
+  const auto [sql, values] = chosen("count(*)", query);
+  Statement row = database_.prepare(sql);
+  row.bind(values);
+  row.step();
+  return static_cast<std::size_t>(row.whole(0));
 }
 
 std::vector<UnreadFile> Index::unread() {

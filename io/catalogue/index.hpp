@@ -3,6 +3,7 @@
 /// nothing that is not in the files.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -72,6 +73,8 @@ class Index {
   void remove(const std::string& file);
 
   [[nodiscard]] std::vector<Entry> find(const Query& query);
+  /// Of the records that meet the conditions, however many find() gives.
+  [[nodiscard]] std::size_t count(const Query& query);
   [[nodiscard]] std::vector<UnreadFile> unread();
 
  private:

@@ -210,11 +210,11 @@ class Description(unittest.TestCase):
 
     def setUp(self):
         self.hanging = Hanging(self)
-        # The reports of this daemon come from a program that can be held: it reads a pipe first, where there is one.
+        # The reports of this daemon come from a program that can be held, by a pipe that it reads first, and broken.
         folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="stickslip-")))
-        self.pipe = folder / "pipe"
+        self.pipe, self.broken = folder / "pipe", folder / "broken"
         shutil.copy(BUILD / "bin" / "stickslipd", folder)
-        (folder / "stickslip").write_text(f'#!/bin/sh\n[ -p {self.pipe} ] && /bin/cat {self.pipe}\nexec {CLI} "$@"\n', encoding="utf-8")
+        (folder / "stickslip").write_text(f'#!/bin/sh\n[ -p {self.pipe} ] && /bin/cat {self.pipe}\n[ -e {self.broken} ] && echo "stickslip: broken" >&2 && exit 1\nexec {CLI} "$@"\n', encoding="utf-8")
         (folder / "stickslip").chmod(0o700)
         self.daemon = Daemon(self, '[test]\nbegins = "command"\n', board=weighing_board(self, SOURCE, speed=10), program=folder / "stickslipd")
         self.document = self.daemon.ask("GET", "/v1/openapi.json")[1]
@@ -243,7 +243,7 @@ class Description(unittest.TestCase):
         return status, body
 
     def test_every_path_method_and_answer_is_as_described(self):
-        for path in ("/v1/status", "/v1/openapi.json", "/v1/tests", "/v1/plan", "/v1/batch", "/v1/batches", "/v1/controller", "/v1/calibration", "/metrics"):
+        for path in ("/v1/status", "/v1/openapi.json", "/v1/tests", "/v1/trend", "/v1/plan", "/v1/batch", "/v1/batches", "/v1/controller", "/v1/calibration", "/metrics"):
             self.assertEqual(self.check("GET", path)[0], 200)
         self.assertEqual(self.check("GET", "/v1/live")[0], 426)
         self.crowd()
@@ -315,6 +315,7 @@ class Description(unittest.TestCase):
         with unwritable(record.parent / "batches.jsonl"):
             self.assertEqual(self.check("DELETE", "/v1/batch")[0], 507)
         self.reports(record)
+        self.records(record)
         self.assertEqual(self.check("DELETE", "/v1/batch")[0], 200)
         status, body = self.check("GET", f"/v1/records/{record.name}", template="/v1/records/{name}")
         self.assertEqual((status, body), (200, record.read_bytes()))
@@ -401,6 +402,46 @@ class Description(unittest.TestCase):
         self.assertEqual(status, 409)
         self.assertIn(f"{record.name}: there is no such file", body["error"])
         record.with_suffix(".kept").rename(record)
+
+    def records(self, record):
+        """The search, and trace and report of what it finds."""
+        self.assertEqual(self.check("POST", "/v1/void", {"test": 1, "reason": "paper torn"})[0], 200)
+        search = "/v1/records"
+        status, found = self.check("GET", "/v1/records?sample=*&most=1000", template=search)
+        self.assertEqual(status, 200)
+        # Without HOME and XDG_CACHE_HOME this daemon keeps no index, and says so.
+        self.assertRegex(found["notices"][0], "set XDG_CACHE_HOME")
+        one = next(one for one in found["records"] if one["record"] == record.name)
+        self.assertEqual(one["voided"]["reason"], "paper torn")
+        self.assertEqual(self.check("GET", "/v1/records?sample=none%20such", template=search)[1]["count"], 0)
+        for wrong in ("from=2026-13-01", "where=S", "where=x%3D1:2", "regime=slip", "finding=x", "fact=x", "most=0", "x=1", "to=now"):
+            status, body = self.check("GET", f"/v1/records?{wrong}", template=search)
+            self.assertEqual((status, body["error"].split("=")[0].split(" ")[0].rstrip(":")), (400, wrong.split("=")[0]), wrong)
+        path, trace, report = f"/v1/records/{record.name}", "/v1/records/{name}/trace", "/v1/records/{name}/report"
+        self.assertEqual(self.check("GET", f"{path}/trace", template=trace)[0], 409)
+        self.assertEqual(self.check("POST", "/v1/restore", {"record": record.name})[0], 200)
+        self.assertEqual(self.check("GET", f"{path}/trace?points=50", template=trace)[1], self.daemon.ask("GET", "/v1/tests/1/trace?points=50")[1])
+        self.assertTrue(self.check("GET", f"{path}/report", template=report)[1].startswith("<!DOCTYPE html>"))
+        self.assertEqual(len(self.check("GET", f"{path}/report?format=json", template=report)[1]["tests"]), 1)
+        self.assertIn(record.name, self.check("GET", f"{path}/report?format=csv", template=report)[1])
+        for what, template in (("trace", trace), ("report", report)):
+            self.assertEqual(self.check("GET", f"{path}/{what}?x=1", template=template)[0], 400)
+            for name in ("x.h5", "..%2Fd.toml", "../d.toml", f"../records/{record.name}", f"./{record.name}", str(record), "."):
+                self.assertEqual(self.check("GET", f"/v1/records/{name}/{what}", template=template)[0], 404, name)
+        for asked, template in (("/v1/records", None), (f"{path}/trace", trace), (f"{path}/report", report)):
+            os.mkfifo(self.pipe)
+            held = UnixConnection(self.daemon.socket)
+            held.request("GET", asked)
+            with self.pipe.open("w", encoding="utf-8"):  # Opens when the program reads.
+                self.assertEqual(self.check("GET", asked, template=template)[0], 503)
+            self.assertEqual(held.getresponse().status, 200)
+            held.close()
+            self.pipe.unlink()
+        self.broken.touch()
+        for asked, template in (("/v1/records", None), (f"{path}/report", report)):
+            status, body = self.check("GET", asked, template=template)
+            self.assertEqual((status, body["error"].partition(": ")[2]), (409, "broken"))
+        self.broken.unlink()
 
     def reports(self, record):
         """On the batch that leads, which has no test yet, and on another; both compared."""

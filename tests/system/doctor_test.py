@@ -76,7 +76,7 @@ class Doctor(unittest.TestCase):
         self.expect(found["daemon"], "good", "acquiring at 350.0 Hz")
         self.expect(found["board"], "good", "in use by the daemon")
         self.expect(found["calibration"], "warning", "none", "stickslip calibrate")
-        self.assertEqual(set(found), {"config", "daemon", "board", "rate", "calibration", "records", "filesystem", "disk", "realtime", "clock"})
+        self.assertEqual(set(found), {"config", "daemon", "board", "rate", "calibration", "records", "filesystem", "disk", "realtime", "clock", "trend"})
         # The same for people: a line for each, and no colours in a pipe.
         text = subprocess.run([str(CLI), "doctor", "--config", "d.toml"], cwd=daemon.folder, capture_output=True, text=True, timeout=TIMEOUT_S, check=False)
         self.assertEqual(text.returncode, status)
@@ -89,7 +89,7 @@ class Doctor(unittest.TestCase):
         self.assertEqual(status, 1)
         self.expect(found["config"], "bad", "d.toml.*there is no such file", "stickslip doctor --config FILE")
         self.assertEqual({check for check, finding in found.items() if finding["verdict"] == "unknown"},
-                         {"daemon", "board", "calibration", "records", "filesystem", "disk", "realtime"})
+                         {"daemon", "board", "calibration", "records", "filesystem", "disk", "realtime", "trend"})
         found, status = self.examine(SIMULATED + "[record]\nfolders = 1\n")
         self.expect(found["config"], "bad", r"d.toml:\d+: record.folders")
         found, status = self.examine(SIMULATED.replace("stick-slip-at", "no-such"))

@@ -56,6 +56,7 @@ class Find(unittest.TestCase):
         self.assertEqual(sorted(self.found("--method", "penner-1995")), ["rings.h5", "sticks.h5"])
         self.assertEqual(self.found("--sort", "regime"), ["rings.h5", "sticks.h5"])
         self.assertEqual(self.found("--sort", "regime", "--reverse", "--most", "1"), ["sticks.h5"])
+        self.assertIn("1 more of 2 records are not shown: --most", self.run_stickslip("find", "records", "--most", "1").stdout.decode())
         self.assertEqual(self.found("--from", "2000-01-01", status=NOTHING_FOUND), [])  # A simulation has no date.
 
     def test_outputs_say_the_same(self):
@@ -72,6 +73,16 @@ class Find(unittest.TestCase):
             self.assertEqual(float(row["delta_mu_standard_error"]), shown["details"]["delta_mu"]["standard_error"])
         zero = self.run_stickslip("find", "records", "-0").stdout
         self.assertEqual([name.decode() for name in zero.split(b"\0")], [record["file"] for record in records] + [""])
+
+    def test_json_counts_all_and_says_what_is_void(self):
+        self.run_stickslip("void", str(self.records / "rings.h5"), "--reason", "torn")
+        for folder, prefix in (("records/2026/11", ""), ("records/2026", "11/")):
+            told = json.loads(self.run_stickslip("find", folder, "--sort", "regime", "--json").stdout)
+            self.assertEqual((told["count"], [record["record"] for record in told["records"]]), (2, [f"{prefix}rings.h5", f"{prefix}sticks.h5"]))
+            if prefix == "":
+                self.assertEqual([(record["voided"] or {}).get("reason") for record in told["records"]], ["torn", None])
+        told = json.loads(self.run_stickslip("find", "records/2026/11", "--most", "1", "--json").stdout)
+        self.assertEqual((len(told["records"]), told["count"]), (1, 2))
 
     def test_paths_are_those_of_report(self):
         files = self.run_stickslip("find", "records", "--paths").stdout.decode().split()

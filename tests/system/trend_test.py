@@ -70,6 +70,18 @@ class Trend(unittest.TestCase):
         self.assertIn('\nstickslip_trend_alarm{chart="omega"} 1\n', metrics)
         self.assertIn('\nstickslip_trend_alarm{chart="zero"} 0\n', metrics)
         self.assertIn("omega rose by about", daemon.run("status").stdout)
+        # GET /v1/trend has the charts to draw them, as `stickslip trend --json`; a restart and a voiding beside the daemon are there at once.
+        code, drawn = daemon.ask("GET", "/v1/trend")
+        self.assertEqual((code, complaints(drawn, {"$ref": "#/components/schemas/Trend"}, description)), (200, []))
+        points = {chart["chart"]: chart["points"] for chart in drawn["charts"]}
+        self.assertGreater(max(points["omega"]["upper"]), drawn["decision_interval"])
+        self.assertEqual(points["rate"]["value"], [])
+        self.assertEqual(daemon.run("void", self.records / points["zero"]["file"][0], "--reason", "torn").returncode, 0)
+        self.trend("--restart", "damping", "--reason", "new coupling")
+        # Tests go on: of these the first ones are known.
+        again = {chart["chart"]: chart["points"]["file"] for chart in daemon.ask("GET", "/v1/trend")[1]["charts"]}
+        self.assertNotIn(points["zero"]["file"][0], again["zero"])
+        self.assertFalse(set(points["damping"]["file"]) & set(again["damping"]))
         code, log = daemon.end()
         self.assertEqual(code, 0, log)
         self.assertEqual(len(re.findall(r"tester: omega rose by about .*trend-omega, warning: ", log)), 1, log)

@@ -307,6 +307,19 @@ TEST_F(Catalogue, FindsByPatternsRangesRegimesAndFindings) {
   EXPECT_EQ(find(last).entries.front().sample.name, "bag 7");
 }
 
+TEST_F(Catalogue, CountsWhatMeetsTheConditionsBeyondTheFirst) {
+  for (const char* const name : {"a", "b", "c", "d"})
+    static_cast<void>(put(std::string{name} + ".h5", record_of(name)));
+  static_cast<void>(put("e.h5", record_of("e", 0.5)));
+  const Query query{
+      .conditions = {in_range("S=:0.4", "").value()}, .order = "sample", .reversed = true, .most = 1};
+  const Found found = find(query);
+  ASSERT_THAT(found.entries, SizeIs(1));
+  EXPECT_EQ(found.entries[0].sample.name, "d");
+  EXPECT_EQ(found.match_count, 4U);
+  EXPECT_EQ(find({}).match_count, 5U);
+}
+
 TEST_F(Catalogue, FindsByFactsAsTextsAndAsRanges) {
   record::Record warm = record_of("warm");
   record::Record silent = record_of("silent");

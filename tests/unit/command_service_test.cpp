@@ -76,7 +76,8 @@ class CommandServiceTest : public testing::Test {
                                      .session = [] { return nullptr; },
                                      .on_main = [](const std::function<void()>&) {},
                                      .batches = &batches_,
-                                     .reports = &reports_}};
+                                     .reports = &reports_,
+                                     .trend = {}}};
 };
 
 TEST_F(CommandServiceTest, WithoutABoardCommandsAreRefused) {

@@ -225,6 +225,62 @@ TEST_F(ControlApi, ATraceIsThatOfTheRecordOfItsTest) {
   EXPECT_EQ(get(trace).status, 503);
 }
 
+TEST_F(ControlApi, SearchesRecordsByTheOptionsOfFind) {
+  const auto get = [this](const std::string& target) { return ask({"GET", target, "", "", ""}); };
+  EXPECT_EQ(get("/v1/records").body, "\"most 100\"");
+  // Several ranges, regimes and findings have a comma between; a text may hold one.
+  EXPECT_EQ(
+      get("/v1/records?sample=liner%2C%20a*&grade=&where=S%3D0.3:0.4,K%3D:0.3&regime=mixed&most=1000").body,
+      "\"most 1000 regime=mixed sample=liner, a* where=S=0.3:0.4 where=K=:0.3\"");
+  for (const auto& [query, why] : std::initializer_list<std::pair<std::string, const char*>>{
+           {"most=0", "most: must be a whole number from 1 to 1000, not 0"},
+           {"most=1001", "most: must be a whole number from 1 to 1000, not 1001"},
+           {"folder=/etc", "folder: there is no such key; there is from, to, sample"},
+           {"sample=%00", "sample: holds a zero byte"},
+           {"sample=a&sample=b", "sample: stands there twice"}}) {
+    const HttpReply refused = get("/v1/records?" + query);
+    EXPECT_EQ(refused.status, 400) << query;
+    EXPECT_THAT(error(refused), testing::HasSubstr(why)) << query;
+  }
+  for (const auto& [kind, status] : {std::pair{base::ErrorKind::kUsage, 400},
+                                     {base::ErrorKind::kBusy, 503},
+                                     {base::ErrorKind::kFailure, 409}}) {
+    bench_.reported.refusal = base::Error{kind, "why"};
+    EXPECT_EQ(get("/v1/records").status, status);
+  }
+}
+
+TEST_F(ControlApi, GivesTraceAndReportOfAnyRecordByItsName) {
+  const auto get = [this](const std::string& target) { return ask({"GET", target, "", "", ""}); };
+  const std::string old = "/v1/records/2026/old%20one.h5";
+  EXPECT_EQ(get(old + "/trace?points=80").body, "\"trace /records/2026/old one.h5 80 -1 -1\"");
+  EXPECT_EQ(get("/v1/records/20261121T125252Z-0007.h5/trace").body,
+            "\"trace /records/20261121T125252Z-0007.h5 2000 -1 -1\"");
+  EXPECT_EQ(get(old + "/report").body, "\"form 0: /records/2026/old one.h5\"");
+  EXPECT_EQ(get(old + "/report?format=csv").content_type, "text/csv; charset=utf-8");
+  for (const auto& [target, status, why] : std::initializer_list<std::tuple<std::string, int, const char*>>{
+           {old + "/trace?points=0", 400, "points: must be a whole number from 1 to 20000, not 0"},
+           {old + "/report?format=pdf", 400, "format: is html, csv or json, not pdf"},
+           {old + "/report?pool=grades", 400, "pool: there is no such key; there is format"},
+           {"/v1/records/x.h5/trace", 404, "there is no record x.h5"},
+           {"/v1/records/x.h5/report", 404, "there is no record x.h5"},
+           {"/v1/records/x.h5", 404, "there is no record x.h5"}}) {
+    const HttpReply refused = get(target);
+    EXPECT_EQ(refused.status, status) << target;
+    EXPECT_THAT(error(refused), testing::HasSubstr(why)) << target;
+  }
+  command("/v1/void", "ada", R"({"test": 7, "reason": "paper torn"})");
+  const HttpReply voided = get("/v1/records/20261121T125252Z-0007.h5/trace");
+  EXPECT_EQ(voided.status, 409);
+  EXPECT_THAT(error(voided), testing::HasSubstr("20261121T125252Z-0007.h5 is void: paper torn"));
+}
+
+TEST_F(ControlApi, GivesTheControlCharts) {
+  const HttpReply reply = ask({"GET", "/v1/trend", "", "", ""});
+  EXPECT_EQ(reply.status, 200);
+  EXPECT_EQ(json::parse(reply.body)["charts"], json::array());
+}
+
 TEST_F(ControlApi, TellsTheStatusByTheNamesOfTheRecord) {
   const HttpReply reply = ask({"GET", "/v1/status", "", "", ""});
   EXPECT_EQ(reply.status, 200);

@@ -10,6 +10,8 @@
 #include "cli/doctor/checks.hpp"
 
 #include "core/pipeline/bench_state.hpp"
+#include "daemon/types/batch_journal.hpp"
+#include "daemon/types/tester_history.hpp"
 #include "tests/support/closed_folder.hpp"
 #include "tests/support/lacking_disk.hpp"
 
@@ -155,6 +157,39 @@ TEST_F(Doctor, ARunningDaemonIsAskedWhatItsFileSystemLacks) {
   EXPECT_THAT(find("filesystem").what, testing::HasSubstr("has no locks"));
   status_ = R"({"state": "acquiring", "storage": {"lacks": []}})";
   EXPECT_EQ(find("filesystem").verdict, Verdict::kGood);
+}
+
+// As `stickslip trend` reads it, whether or not a daemon runs.
+TEST_F(Doctor, AnAlarmOfAControlChartIsAWarningWithItsRestart) {
+  EXPECT_EQ(find("trend").verdict, Verdict::kGood);
+  EXPECT_EQ(find("trend").what, "no test is charted yet");
+  std::vector<daemon::HistoryEvent> events;
+  for (int i = 0; i < 130; ++i) {
+    daemon::TestFinished test{
+        .uuid = "u" + std::to_string(i), .status = record::Status::kComplete, .values = {}};
+    test.values.file = std::to_string(i) + ".h5";
+    test.values.values[static_cast<std::size_t>(trend::Quantity::kZero)] =
+        i < 100 ? 0.5 + 0.1 * (i % 2) : 2.0;
+    events.push_back({"t", test});
+  }
+  const daemon::TesterHistory history{folder_ / "records"};
+  ASSERT_TRUE(history.append({events.begin(), events.begin() + 100}));
+  EXPECT_EQ(find("trend").what, "no alarm of a control chart");
+  ASSERT_TRUE(history.append({events.begin() + 100, events.end()}));
+  EXPECT_EQ(find("trend").verdict, Verdict::kWarning);
+  EXPECT_THAT(find("trend").what, testing::HasSubstr("the zero rose by about"));
+  EXPECT_THAT(find("trend").to_do, testing::HasSubstr("/records --restart zero --reason TEXT"));
+  // Tests that are void now tell no alarm.
+  daemon::BatchJournal journal{folder_ / "records"};
+  for (int i = 100; i < 130; ++i)
+    ASSERT_TRUE(journal.append({"t", "ada", daemon::TestVoided{std::to_string(i) + ".h5", "torn"}}));
+  EXPECT_EQ(find("trend").verdict, Verdict::kGood);
+  ASSERT_TRUE(history.append({{"t", daemon::ChartsRestarted{std::nullopt, false, "new cell", "ada"}}}));
+  fs::remove(folder_ / "records" / "batches.jsonl");
+  EXPECT_EQ(find("trend").verdict, Verdict::kGood);
+  fs::remove(folder_ / "records" / daemon::kTesterHistory);
+  fs::create_directories(folder_ / "records" / daemon::kTesterHistory);
+  EXPECT_EQ(find("trend").verdict, Verdict::kWarning);
 }
 
 TEST_F(Doctor, ExitStatusIsThatOfTheWorst) {

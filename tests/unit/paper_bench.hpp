@@ -140,6 +140,22 @@ class PaperReports final : public Reports {
                        request.from_s.value_or(-1.0), request.to_s.value_or(-1.0)));
   }
 
+  void report(const std::filesystem::path& record, ReportForm form, Answer answer) override {
+    if (refusal) return answer(tl::unexpected(*refusal));
+    answer(fmt::format("\"form {}: {}\"", static_cast<int>(form), record.string()));
+  }
+  void find(const RecordSearch& search, Answer answer) override {
+    if (refusal) return answer(tl::unexpected(*refusal));
+    std::string text = fmt::format("most {}", search.most);
+    for (const auto& [option, value] : search.conditions) text += fmt::format(" {}={}", option, value);
+    answer(fmt::format("\"{}\"", text));
+  }
+  /// Holds one.
+  [[nodiscard]] base::Result<std::filesystem::path> record(const std::string& name) const override {
+    if (name == "2026/old one.h5") return std::filesystem::path{"/records/" + name};
+    return base::usage_error("there is no record {}", name);
+  }
+
   std::optional<base::Error> refusal;
 };
 
@@ -151,6 +167,7 @@ class PaperBench final : public Bench {
   void set_plan(Plan plan) override { plan_ = std::move(plan); }
   [[nodiscard]] Batches& batches() override { return batches_; }
   [[nodiscard]] Reports& reports() override { return reported; }
+  void trend(std::function<void(std::string)> answer) override { answer(R"({"charts": []})"); }
   void command(Command command, std::function<void(const Outcome&)> answer) override {
     commands.push_back(command);
     if (later) {

@@ -135,6 +135,48 @@ TEST_F(ReportJobsTest, TellsWhyThereIsNone) {
               HasSubstr("/no/such/stickslip: there is no such program"));
 }
 
+TEST_F(ReportJobsTest, ASearchIsThatOfFindWithTheIndexOfThisUser) {
+  const RecordSearch search{.conditions = {{"sample", "--liner"}, {"where", "S=0.3:"}}, .most = 5};
+  const auto found = [&](const std::string& text) {
+    page::ReportJobs jobs{parts(script(text))};
+    std::optional<base::Result<std::string>> got;
+    jobs.find(search, [&got](base::Result<std::string> answer) { got = std::move(answer); });
+    io_.restart();
+    io_.run();
+    return got.value_or(base::failure("no answer"));
+  };
+  EXPECT_EQ(found(R"(for word; do echo "$word"; done)").value_or(""),
+            "find\n--json\n--sort=date\n--reverse\n--most=5\n--sample=--liner\n--where=S=0.3:\n/records\n");
+  ::setenv("XDG_CACHE_HOME", "/some/cache", 1);
+  EXPECT_EQ(found("echo $XDG_CACHE_HOME").value_or(""), "/some/cache\n");
+  ::unsetenv("XDG_CACHE_HOME");
+  // Status 3: nothing is found, and the answer says so.
+  EXPECT_EQ(found("echo '{}'; exit 3").value_or(""), "{}\n");
+  const auto wrong = found("echo 'stickslip: --where S=9: must be RESULT=LOWEST:HIGHEST' >&2; exit 2");
+  EXPECT_EQ(wrong.error().kind, base::ErrorKind::kUsage);
+  EXPECT_EQ(wrong.error().message, "where S=9: must be RESULT=LOWEST:HIGHEST");
+  const auto none = found("echo 'stickslip: /records: name a folder of records' >&2; exit 2");
+  EXPECT_EQ(none.error().kind, base::ErrorKind::kFailure);
+}
+
+TEST_F(ReportJobsTest, ARecordIsFoundByItsOwnNameAlone) {
+  const std::filesystem::path records = folder_.path() / "records";
+  std::filesystem::create_directories(records / "2026");
+  for (const char* const name : {"records/a.h5", "records/2026/b.h5", "records/batches.jsonl", "outside.h5"})
+    std::ofstream{folder_.path() / name} << "x";
+  std::filesystem::create_symlink(folder_.path() / "outside.h5", records / "link.h5");
+  std::filesystem::create_directory_symlink(folder_.path(), records / "up");
+  const page::ReportJobs jobs{{.io = io_, .folder = records, .program = ""}};
+  EXPECT_EQ(jobs.record("a.h5").value_or(""), std::filesystem::canonical(records) / "a.h5");
+  EXPECT_EQ(jobs.record("2026/b.h5").value_or(""), std::filesystem::canonical(records) / "2026/b.h5");
+  for (const std::string& name :
+       {std::string{"../outside.h5"}, std::string{"./a.h5"}, std::string{"2026/../a.h5"},
+        std::string{"link.h5"}, std::string{"up/outside.h5"}, std::string{"c.h5"},
+        std::string{"batches.jsonl"}, std::string{}, std::string{"a.h5\0", 5}, (records / "a.h5").string()}) {
+    EXPECT_FALSE(jobs.record(name)) << name;
+  }
+}
+
 TEST_F(ReportJobsTest, ItsEndEndsWhatIsBeingMade) {
   const std::filesystem::path pipe = folder_.path() / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), S_IRWXU), 0);

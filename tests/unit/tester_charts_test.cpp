@@ -134,6 +134,30 @@ TEST(TesterCharts, LetAnAlarmStandUntilItIsAcknowledged) {
   EXPECT_EQ(charts.state(Quantity::kZero).no_value_reason, "no test since the restart");
 }
 
+TEST(TesterCharts, KeepTheLatestTestsToDrawWithTheArmThatToldAnAlarm) {
+  TesterCharts charts;
+  for (int i = 0; i < 100; ++i) charts.add(zero_test(i % 2 == 0 ? 0.5 : 0.6, i));
+  const std::deque<ChartPoint>& points = charts.state(Quantity::kZero).points;
+  ASSERT_EQ(points.size(), 100U);
+  EXPECT_EQ(points.back().file, "99.h5");
+  EXPECT_EQ(points.back().value, 0.6);
+  EXPECT_EQ(points.back().upper, charts.state(Quantity::kZero).chart.upper());
+  EXPECT_EQ(points.back().lower, charts.state(Quantity::kZero).chart.lower());
+  // The arm begins again at 0 with the alarm; what is drawn passes h.
+  int number = 100;
+  while (!charts.state(Quantity::kZero).alarm) charts.add(zero_test(-2.0, number++));
+  EXPECT_GT(points.back().lower, kDecisionInterval);
+  EXPECT_LT(points.at(points.size() - 2).lower, kDecisionInterval);
+  EXPECT_EQ(points.back().upper, 0.0);
+  while (number < 500) charts.add(zero_test(0.5, number++));
+  EXPECT_EQ(points.size(), ChartState::kMostPoints);
+  EXPECT_EQ(points.front().file, "300.h5");
+  charts.restart(Quantity::kZero, true);
+  EXPECT_EQ(points.size(), ChartState::kMostPoints);
+  charts.restart(Quantity::kZero, false);
+  EXPECT_TRUE(points.empty());
+}
+
 TEST(TesterCharts, LearnUntilTheBaselineIsFull) {
   TesterCharts charts;
   for (int number = 0; number < kFullBaseline; ++number) {

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <string>
 
+#include <nlohmann/json.hpp>
+
 #include "core/record/finaliser.hpp"
 #include "daemon/charts/keeper.hpp"
 #include "tests/support/manual_clock.hpp"
@@ -236,6 +238,29 @@ TEST_F(KeeperTest, TellsTroubleWithTheHistoryOnceAndKeepsItInTheState) {
   EXPECT_THAT(troubles_, testing::ElementsAre(HasSubstr("line 1: has no checksum")));
   EXPECT_EQ(state_.trouble, troubles_.front());
   EXPECT_EQ(count(Quantity::kNoise), 1);
+}
+
+// `stickslip trend --restart` and `stickslip void` beside the daemon: no test need follow.
+TEST_F(KeeperTest, KnowsARestartAndAVoidingWhenItIsAsked) {
+  ASSERT_TRUE(TesterHistory{folder_}.append({test_of(1, 0.5), test_of(2, 0.6), test_of(3, 0.7)}));
+  keep([this](charts::Keeper& keeper) {
+    const auto noise = [&keeper] {
+      nlohmann::json told;
+      keeper.ask([&told](const std::string& text) { told = nlohmann::json::parse(text); });
+      keeper.settle();
+      return told["charts"][static_cast<std::size_t>(Quantity::kNoise)];
+    };
+    EXPECT_THAT(noise()["points"]["value"], testing::ElementsAre(0.5, 0.6, 0.7));
+    ASSERT_TRUE(BatchJournal{folder_}.append({"t", "ada", TestVoided{"1002.h5", "torn"}}));
+    EXPECT_THAT(noise()["points"]["file"], testing::ElementsAre("1001.h5", "1003.h5"));
+    ASSERT_TRUE(
+        TesterHistory{folder_}.append({{"t", ChartsRestarted{Quantity::kNoise, false, "new cell", "ada"}}}));
+    EXPECT_EQ(noise()["test_count"], 0);
+    ASSERT_TRUE(TesterHistory{folder_}.append({test_of(4, 0.5)}));
+    keeper.look();
+    keeper.settle();
+    EXPECT_EQ(keeper.state().charts.at(static_cast<std::size_t>(Quantity::kNoise)).test_count, 1);
+  });
 }
 
 TEST_F(KeeperTest, ReadsAHistoryThatWasReplacedFromItsBeginning) {
