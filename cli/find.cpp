@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -24,8 +25,8 @@
 #include "core/base/text.hpp"
 #include "core/base/wording.hpp"
 #include "core/record/iso_time.hpp"
-#include "daemon/types/batch_journal.hpp"
 #include "daemon/types/batch_json.hpp"
+#include "daemon/types/voidings.hpp"
 
 namespace stickslip::cli {
 namespace {
@@ -174,35 +175,31 @@ std::string text_of(const FindOptions& options, const Found& found) {
   return text;
 }
 
-/// Tests that are void, by the journal of the batches of this folder, or of one above where this is a dated
-/// folder.
-class Voidings {
- public:
-  explicit Voidings(const std::filesystem::path& folder) {
-    const std::filesystem::path place = daemon::journal_folder_of(folder / "any.h5").value_or(folder);
-    prefix_ = daemon::name_in_journal(place, folder);
-    daemon::BatchJournal journal{place};
-    // A journal that cannot be read voids nothing.
-    if (!journal.read_on(book_)) book_ = {};
-  }
-  [[nodiscard]] Json of(const std::string& file) const {
-    return daemon::voiding_json(book_.voided((prefix_ / file).lexically_normal().generic_string()));
-  }
-
- private:
-  std::filesystem::path prefix_;  ///< From the journal's folder to the searched one.
-  daemon::BatchBook book_;
-};
+std::string missing_text(const io::UnreadFolder& folder) {
+  return fmt::format("{}: {}: its records are missing here", folder.folder.string(), folder.why);
+}
 
 Json json_of(const FindOptions& options, const Found& found) {
-  const Voidings voidings{options.folder};
+  daemon::Voidings voidings;
+  std::vector<std::string> notices = found.notices;
+  for (const io::UnreadFolder& folder : found.unread_folders) notices.push_back(missing_text(folder));
+  // Of a journal that cannot be read it is not known what it voids; once for each of its records would be too
+  // often.
+  const auto voiding = [&](const std::string& file) -> Json {
+    const auto voided = voidings.of(std::filesystem::path{options.folder} / file);
+    if (voided) return daemon::voiding_json(*voided ? &**voided : nullptr);
+    std::string notice = fmt::format("{}; whether its tests are void is not known", voided.error().message);
+    if (std::find(notices.begin(), notices.end(), notice) == notices.end())
+      notices.push_back(std::move(notice));
+    return nullptr;
+  };
   Json records = Json::array();
   for (const Entry& entry : found.entries) {
     const record::SampleFacts& sample = entry.sample;
     records.push_back(
         {{"file", path_of(options, entry.file)},
          {"record", entry.file},
-         {"voided", voidings.of(entry.file)},
+         {"voided", voiding(entry.file)},
          {"start_time", entry.start_realtime_ns ? Json(record::iso_time(*entry.start_realtime_ns)) : Json()},
          {"title", io::or_null(entry.title)},
          {"uuid", io::or_null(entry.uuid)},
@@ -225,7 +222,7 @@ Json json_of(const FindOptions& options, const Found& found) {
                       {"looked", file.state == catalogue::State::kUnreadable},
                       {"why", file.why}});
   }
-  return {{"records", records}, {"count", found.match_count}, {"unread", unread}, {"notices", found.notices}};
+  return {{"records", records}, {"count", found.match_count}, {"unread", unread}, {"notices", notices}};
 }
 
 std::string csv_of(const FindOptions& options, const Found& found) {
@@ -303,8 +300,7 @@ int run_find(const FindOptions& options) {
   if (!found) return print(tl::unexpected(found.error()));
   for (const std::string& notice : found->notices) io::print_error("stickslip", "warning: " + notice);
   for (const io::UnreadFolder& folder : found->unread_folders) {
-    io::print_error("stickslip", fmt::format("warning: {}: {}: its records are missing here",
-                                             folder.folder.string(), folder.why));
+    io::print_error("stickslip", "warning: " + missing_text(folder));
   }
   const bool is_table = !options.json && !options.csv && !options.paths && !options.paths0;
   if (!is_table && !found->unread.empty()) io::print_error("stickslip", "warning: " + missing_text(*found));

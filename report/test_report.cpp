@@ -16,29 +16,11 @@
 #include "core/record/method_text.hpp"
 #include "core/record/read_apart.hpp"
 #include "daemon/types/batch_journal.hpp"
+#include "daemon/types/voidings.hpp"
 
 namespace stickslip::report {
 
 namespace {
-
-/// Reads the batch journals beside the records, each once.
-class Voidings {
- public:
-  base::Result<std::optional<daemon::Voiding>> of(const std::filesystem::path& file) {
-    const std::optional<std::filesystem::path> folder = daemon::journal_folder_of(file);
-    if (!folder) return std::optional<daemon::Voiding>{};
-    const auto [book, is_new] = books_.try_emplace(*folder);
-    if (is_new) {
-      const auto read = daemon::BatchJournal{*folder}.read_on(book->second);
-      if (!read) return tl::unexpected(read.error());
-    }
-    const daemon::Voiding* const voided = book->second.voided(daemon::name_in_journal(*folder, file));
-    return voided == nullptr ? std::optional<daemon::Voiding>{} : *voided;
-  }
-
- private:
-  std::map<std::filesystem::path, daemon::BatchBook> books_;
-};
 
 /// "20261122T180301Z (liner 42), …", the latest first.
 std::string names_of(const daemon::BatchBook& book) {
@@ -55,7 +37,7 @@ base::Result<Material> read_material(std::string label, std::span<const std::str
   Material material;
   material.label = std::move(label);
   material.pooling = pooling;
-  Voidings voidings;
+  daemon::Voidings voidings;
   for (std::size_t i = 0; i < files.size(); ++i) {
     const std::string& file = files[i];
     auto voided = voidings.of(file);

@@ -345,22 +345,24 @@ class Examination {
   }
 
   void look_at_trend() {
+    constexpr const char* kDamagedHistory =
+        "let this user read it, or, if it is damaged, move it away: the charts then begin anew";
     if (!config_) return unknown("trend");
     const std::string folder = base::shell_word(config_->record_folder.string());
     daemon::TesterHistory history{config_->record_folder};
     auto read = history.read_on();
     const auto charts = read ? daemon::charts_now(history) : tl::unexpected(read.error());
     if (!charts) {
-      return warn("trend", charts.error().message,
-                  "let this user read it; one that is damaged is moved away, and the charts begin anew");
+      return warn("trend", charts.error().message, kDamagedHistory);
     }
+    if (!read->empty()) warn("trend", read->front(), kDamagedHistory);
     const std::vector<base::Finding> alarms = charts->findings();
     for (const base::Finding& alarm : alarms) {
       warn("trend", alarm.text,
            fmt::format("{}; stickslip trend {} --restart {} --reason TEXT", alarm.action, folder,
                        alarm.code.substr(alarm.code.find('-') + 1)));
     }
-    if (alarms.empty())
+    if (alarms.empty() && read->empty())
       good("trend", history.events().empty() ? "no test is charted yet" : "no alarm of a control chart");
   }
 

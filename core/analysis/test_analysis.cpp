@@ -7,6 +7,7 @@
 #include <functional>
 #include <future>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
@@ -21,6 +22,7 @@
 #include "core/analysis/slack.hpp"
 #include "core/analysis/slip_list.hpp"
 #include "core/analysis/traditional.hpp"
+#include "core/base/contract.hpp"
 #include "core/base/nan.hpp"
 #include "core/detect/regime_rule.hpp"
 #include "core/estimate/sampling.hpp"
@@ -41,6 +43,21 @@ double noise_floor(const base::LongColumn<double>& values, double step_coefficie
   return std::max(
       {signal::kRoundingSigma * step, kSmallestRelativeNoise * largest, std::numeric_limits<double>::min()});
 }
+
+/// What a check of the signal reads in another thread.
+struct Signal {
+  estimate::Trace trace;
+  base::LongColumn<double> measured;
+  base::LongColumn<std::uint8_t> saturated;
+  AnalysisSettings settings;
+};
+
+/// What a search for hum reads in another thread.
+struct Loaded {
+  estimate::Trace trace;
+  base::LongColumn<detect::Fall> slips;
+  double scan_rate_Hz;
+};
 
 /// Turning points must not follow noise before the noise is known.
 double hysteresis(double sigma) { return detect::SlipRule::kHysteresisSigmas * sigma; }
@@ -163,6 +180,7 @@ void TestAnalysis::keep_live(const detect::LiveCycle& cycle) {
 }
 
 void TestAnalysis::end_live() {
+  STICKSLIP_EXPECTS(settings_.live);
   if (const auto cycle = live_.end()) keep_live(*cycle);
 }
 
@@ -172,25 +190,32 @@ void TestAnalysis::gap(base::ScanIndex first, std::int64_t count, bool estimated
 }
 
 std::vector<detect::Cycle> TestAnalysis::take_new_cycles() {
+  STICKSLIP_EXPECTS(settings_.live);
   std::vector<detect::Cycle> taken = new_cycles_;
   new_cycles_.clear();  // Their room stays.
   return taken;
 }
 
 std::vector<detect::FallBegun> TestAnalysis::take_new_falls() {
+  STICKSLIP_EXPECTS(settings_.live);
   std::vector<detect::FallBegun> taken = new_falls_;
   new_falls_.clear();  // Their room stays.
   return taken;
 }
 
 TestResults TestAnalysis::finish() {
+  // What has no thread, also where there is no room for one, runs when it is asked. A task has a name: async
+  // moves what it is given before it knows whether there is room.
+  const auto policy_of = [](bool on_a_thread) {
+    return on_a_thread ? std::launch::async | std::launch::deferred : std::launch::deferred;
+  };
   const auto detect_beside = [&](detect::EstimatorTier estimator, bool on_a_thread) {
     detect::LiveSettings live = live_settings(settings_);
     live.estimator = estimator;
-    // What has no thread, also where there is no room for one, runs when it is asked.
-    const auto policy = on_a_thread ? std::launch::async | std::launch::deferred : std::launch::deferred;
-    return std::async(policy, &TestAnalysis::detected, live, indices_.view(), coefficients_.view(),
-                      saturated_.view(), gaps_, settings_.scratch_folder);
+    const auto scans = std::make_shared<const Scans>(
+        Scans{indices_.view(), coefficients_.view(), saturated_.view(), gaps_, settings_.scratch_folder});
+    const auto task = [live, scans] { return detected(live, *scans); };
+    return std::async(policy_of(on_a_thread), task);
   };
   std::future<base::LongColumn<detect::LiveCycle>> detection;
   if (settings_.live) {
@@ -212,9 +237,13 @@ TestResults TestAnalysis::finish() {
   results.transition_time = Estimate::none("no transition");
 
   estimate::Trace trace = despiked_trace();
-  const SignalCheck check = check_signal(trace, std::as_const(coefficients_), std::as_const(saturated_),
-                                         settings_.step_coefficient, settings_.scan_rate_Hz);
-  leave_out(check, trace);
+  const auto signal = std::make_shared<const Signal>(
+      Signal{trace.view(), coefficients_.view(), saturated_.view(), settings_});
+  const auto check_task = [signal] {
+    return check_signal(signal->trace, signal->measured, signal->saturated, signal->settings.step_coefficient,
+                        signal->settings.scan_rate_Hz);
+  };
+  std::future<SignalCheck> checking = std::async(policy_of(!settings_.live), check_task);
   results.spike_count = settings_.skipped.spikes ? Estimate::none("spikes are kept, and not looked for")
                                                  : Estimate::of(static_cast<double>(spikes_.size()));
   if (trace.size() < signal::kFewestScansForNoise) {
@@ -223,12 +252,18 @@ TestResults TestAnalysis::finish() {
   }
   const double sigma = signal::scan_noise(trace.value, noise_floor(trace.value, settings_.step_coefficient));
   base::LongColumn<detect::Fall> slips = find_slips(trace, sigma, settings_.scratch_folder);
+  const SignalCheck check = checking.get();
+  leave_out(check, trace);
   break_at_gaps(trace, slips);
   read_speeds(trace);
   if (!slips.empty()) {
     follow_speed(trace, slips);
     follow_holds(trace, slips, sigma, results);
   }
+  const auto loaded =
+      std::make_shared<const Loaded>(Loaded{trace.view(), slips.view(), settings_.scan_rate_Hz});
+  const auto hum_task = [loaded] { return find_hum(loaded->trace, loaded->slips, loaded->scan_rate_Hz); };
+  std::future<std::optional<Hum>> humming = std::async(policy_of(!settings_.live), hum_task);
   results.cycle_count = Estimate::of(static_cast<double>(slips.size()));
   results.smallest_slip = Estimate::of(detect::SlipRule::kSignificantSigmas * sigma);
   const TraditionalCoefficients traditional =
@@ -323,8 +358,7 @@ TestResults TestAnalysis::finish() {
     });
   }
   period_results(trace, slips, results);
-  if (const auto hum = find_hum(trace, slips, settings_.scan_rate_Hz))
-    base::add(results.findings, hum_finding(*hum, results.regime));
+  if (const auto hum = humming.get()) base::add(results.findings, hum_finding(*hum, results.regime));
   if (auto finding = sampling_finding(settings_.scan_rate_Hz, results))
     base::add(results.findings, *std::move(finding));
   if (slack.count == 0) {
@@ -414,19 +448,16 @@ TestEstimates TestAnalysis::by_turning_points(const estimate::Trace& trace,
 }
 
 base::LongColumn<detect::LiveCycle> TestAnalysis::detected(const detect::LiveSettings& settings,
-                                                           const base::LongColumn<base::ScanIndex>& indices,
-                                                           const base::LongColumn<double>& coefficients,
-                                                           const base::LongColumn<std::uint8_t>& saturated,
-                                                           const std::vector<Gap>& gaps,
-                                                           const std::filesystem::path& scratch) {
+                                                           const Scans& scans) {
   detect::LiveDetector detector{settings};
-  base::LongColumn<detect::LiveCycle> cycles{scratch};
-  auto gap = gaps.begin();
-  for (std::size_t k = 0; k < indices.size(); ++k) {
-    for (; gap != gaps.end() && gap->first <= indices[k]; ++gap) detector.gap(gap->count);
-    if (const auto cycle = detector.add(coefficients[k], saturated[k] != 0)) cycles.push_back(*cycle);
+  base::LongColumn<detect::LiveCycle> cycles{scans.scratch_folder};
+  auto gap = scans.gaps.begin();
+  for (std::size_t k = 0; k < scans.indices.size(); ++k) {
+    for (; gap != scans.gaps.end() && gap->first <= scans.indices[k]; ++gap) detector.gap(gap->count);
+    if (const auto cycle = detector.add(scans.coefficients[k], scans.saturated[k] != 0))
+      cycles.push_back(*cycle);
   }
-  for (; gap != gaps.end(); ++gap) detector.gap(gap->count);
+  for (; gap != scans.gaps.end(); ++gap) detector.gap(gap->count);
   if (const auto cycle = detector.end()) cycles.push_back(*cycle);
   return cycles;
 }

@@ -73,14 +73,14 @@ class TestAnalysis {
   /// \param estimated  the count comes from a clock.
   void gap(base::ScanIndex first, std::int64_t count, bool estimated = false);
 
-  // The next four functions need settings.live.
+  // The next three functions require settings.live.
 
   /// Cycles completed since the last call, as the detector sees them live; finish() refines them. A cycle is
   /// complete when the next slip is seen, or the oscillation has died away.
   [[nodiscard]] std::vector<detect::Cycle> take_new_cycles();
   /// Falls of the force detected since the last call, LiveDetector::kFallDelayScans after they happened.
   [[nodiscard]] std::vector<detect::FallBegun> take_new_falls();
-  /// Ends the live detection and completes the cycle under way. finish() does this too.
+  /// Ends the live detection and completes the cycle under way; finish() does this too.
   void end_live();
   /// Present phase and regime.
   [[nodiscard]] const detect::LiveState& live() const noexcept { return live_.state(); }
@@ -106,6 +106,15 @@ class TestAnalysis {
     base::ScanIndex first;
     std::int64_t count;
     bool estimated;
+  };
+
+  /// What another thread needs of the scans: views of the columns.
+  struct Scans {
+    base::LongColumn<base::ScanIndex> indices;
+    base::LongColumn<double> coefficients;
+    base::LongColumn<std::uint8_t> saturated;
+    std::vector<Gap> gaps;
+    std::filesystem::path scratch_folder;
   };
 
   void keep_live(const detect::LiveCycle& cycle);
@@ -149,10 +158,8 @@ class TestAnalysis {
                                                 const base::LongColumn<detect::LiveCycle>& cycles,
                                                 std::string reason, const Slack& slack = {}) const;
   /// The cycles of scans as add() sees them. May run in another thread than the one that calls this class.
-  [[nodiscard]] static base::LongColumn<detect::LiveCycle> detected(
-      const detect::LiveSettings& settings, const base::LongColumn<base::ScanIndex>& indices,
-      const base::LongColumn<double>& coefficients, const base::LongColumn<std::uint8_t>& saturated,
-      const std::vector<Gap>& gaps, const std::filesystem::path& scratch);
+  [[nodiscard]] static base::LongColumn<detect::LiveCycle> detected(const detect::LiveSettings& settings,
+                                                                    const Scans& scans);
   [[nodiscard]] bool fits_whole_test() const noexcept {
     return settings_.estimator == detect::EstimatorTier::kFit;
   }

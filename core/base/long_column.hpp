@@ -89,7 +89,8 @@ class LongColumn {
     size_ = size;
   }
   void pop_back() { truncate(size_ - 1); }
-  /// The same elements, to be read in another thread while this column is read here. Neither may change.
+  /// The same elements, to be read in another thread while this column is read here. Neither may grow or be
+  /// written; either may be replaced or destroyed.
   [[nodiscard]] LongColumn view() const {
     LongColumn view{folder_};
     view.size_ = size_;

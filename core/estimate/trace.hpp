@@ -41,6 +41,10 @@ struct Trace {
   /// The coefficient without the drift.
   [[nodiscard]] double level(std::size_t scan) const { return value[scan] - drift.at(time_s[scan]); }
   [[nodiscard]] std::size_t size() const noexcept { return value.size(); }
+  /// The same scans, to be read in another thread: base::LongColumn::view().
+  [[nodiscard]] Trace view() const {
+    return {time_s.view(), value.view(), usable.view(), drift, belt, breaks, lost_s};
+  }
 };
 
 /// A usable scan without the drift.

@@ -165,9 +165,8 @@ base::Result<std::filesystem::path> set_aside(const std::filesystem::path& journ
   return damaged;
 }
 
-base::Result<void> publish(
-    const Record& record, const ScanSource& scans, const std::filesystem::path& path, const FileCalls& calls,
-    const TakeEnd& take_end = [] {}) {
+base::Result<void> publish(const Record& record, const ScanSource& scans, const std::filesystem::path& path,
+                           const FileCalls& calls, const TakeEnd& take_end = {}) {
   STICKSLIP_EXPECTS(record.end);
   STICKSLIP_EXPECTS(record.header.board.quantity != daq::RawQuantity::kCounts || record.header.load_cell);
   if (auto is_new = check_new(path); !is_new) return is_new;
@@ -225,6 +224,13 @@ base::Result<void> publish_record(Record& record, const ScanSource& scans, const
     set_end(record, *std::move(end));
   };
   auto published = publish(record, scans, path, system_calls(), take_end);
+  if (evaluation.valid()) {  // The scans could not be written: what the evaluation finds counts first.
+    try {
+      if (auto found = evaluation.get(); !found) return tl::unexpected(found.error());
+    } catch (...) {
+      thrown = std::current_exception();
+    }
+  }
   if (thrown) std::rethrow_exception(thrown);
   if (!end) return tl::unexpected(end.error());
   return published;

@@ -31,9 +31,9 @@ void read_identity(hid_t entry, Record& record);
 /// be computed: voltage without a load cell, coefficient without a sled mass.
 [[nodiscard]] std::optional<daq::Calibration> force_column(const RecordHeader& header);
 
-/// \param take_end  called once the scans are written and before their flags are: record.spikes need not be
-/// known
-///        earlier.
+/// \param take_end  if any: called once the scans are written and before their flags are, so that
+/// record.spikes
+///        need not be known earlier; the scans are then walked twice.
 /// \return SHA-256 of the raw values as the file stores them (u16, u32 or f64, little-endian), hexadecimal.
 [[nodiscard]] std::string write_raw(hid_t entry, const Record& record, const ScanSource& scans,
                                     const std::function<void()>& take_end);

@@ -84,6 +84,7 @@ std::string write_columns(TableWriter& table, const Record& record, const ScanSo
   write_attribute(flag_column.dataset().get(), "meaning", kFlagMeaning);
 
   ValueWriter<Stored> values{std::move(value_column)};
+  std::optional<Flags> flags{record};
   std::optional<daq::ScanIndex> first;
   scans.for_each_piece([&](const ScanPiece& piece) {
     if (!first) first = piece.scan.front();
@@ -99,10 +100,13 @@ std::string write_columns(TableWriter& table, const Record& record, const ScanSo
       for (const double raw : piece.raw) force_N.push_back(static_cast<float>(calibration->force_N(raw)));
       forces->append(force_N);
     }
+    if (!take_end) flag_column.append(flags->of(piece));
   });
-  take_end();
-  Flags flags{record};
-  scans.for_each_piece([&](const ScanPiece& piece) { flag_column.append(flags.of(piece)); });
+  if (take_end) {
+    take_end();
+    flags.emplace(record);
+    scans.for_each_piece([&](const ScanPiece& piece) { flag_column.append(flags->of(piece)); });
+  }
   return values.sha256();
 }
 

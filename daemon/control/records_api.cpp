@@ -43,10 +43,12 @@ daemon::HttpReply file_reply(const std::filesystem::path& record) {
 
 base::Result<std::filesystem::path> record_of(const std::string& name, const daemon::Bench& bench,
                                               const daemon::Reports& reports) {
+  auto record = reports.record(name);
   for (const daemon::TestSummary& test : bench.tests()) {
-    if (!test.file.empty() && std::filesystem::path{test.file}.filename() == name) return test.file;
+    if (!record && !test.file.empty() && std::filesystem::path{test.file}.filename() == name)
+      return test.file;
   }
-  return reports.record(name);
+  return record;
 }
 
 base::Result<daemon::RecordSearch> search_of(const std::string& target) {
@@ -62,6 +64,7 @@ base::Result<daemon::RecordSearch> search_of(const std::string& target) {
     for (std::string& one : values) {
       if (one.find('\0') != std::string::npos)
         return base::usage_error("{}: holds a zero byte; leave it out", key);
+      if (one.empty()) return base::usage_error("{}: nothing stands between two commas; leave one out", key);
       search.conditions.emplace_back(key, std::move(one));
     }
   }

@@ -10,13 +10,17 @@ const Records = (() => {
 
   part("ranges").replaceChildren(...Tables.ranges());
 
+  /// Begin and end of a day by the clock of this browser, as the table shows it.
+  const kEdges = {from: "00:00:00", to: "23:59:59"};
+  const moment = (day, time) => new Date(`${day}T${time}`).toISOString().replace(".000", "");
+
   /// What the fields ask for; empty fields ask for nothing.
   function query() {
     const asked = new URLSearchParams(), ranges = new Map();
     for (const {name, value} of form.querySelectorAll("input, select")) {
       const text = value.trim(), [result, side] = name.split(".");
       if (text === "") continue;
-      if (side) ranges.set(result, {...ranges.get(result), [side]: text}); else asked.set(name, text);
+      if (side) ranges.set(result, {...ranges.get(result), [side]: text}); else asked.set(name, kEdges[name] ? moment(text, kEdges[name]) : text);
     }
     const where = [...ranges].map(([result, {lowest, highest}]) => `${result}=${lowest ?? ""}:${highest ?? ""}`).join(",");
     if (where !== "") asked.set("where", where);

@@ -24,7 +24,8 @@ const Shown = (() => {
       }
       for (const button of buttons) button.disabled = false;
       part("dialog").setAttribute("aria-busy", "false");
-      focused?.focus();
+      // Whoever has gone on to another field stays there.
+      if (document.activeElement === document.body || document.activeElement === focused) focused?.focus();
     }
 
     /// In a window of its own: the report draws with a script that stands in it, which this page's policy forbids.

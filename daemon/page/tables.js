@@ -20,7 +20,7 @@ const Tables = (() => {
 
   /// By the clock of this browser.
   function minute(time) {
-    if (time == null) return "no date";
+    if (!time) return "no date";
     const at = new Date(time), two = number => String(number).padStart(2, "0");
     return `${at.getFullYear()}-${two(at.getMonth() + 1)}-${two(at.getDate())} ${two(at.getHours())}:${two(at.getMinutes())}`;
   }

@@ -62,6 +62,8 @@ base::Result<void> LineJournal::read_on(const std::function<void(std::string_vie
   }
   if (size == read_) return {};
   std::ifstream file{path_, std::ios::binary};
+  if (!file.is_open())
+    return base::failure("{}: cannot be read: {}", path_.string(), record::system_message(errno));
   file.seekg(static_cast<std::streamoff>(read_));
   for (std::string text; std::getline(file, text) && !file.eof();) {
     read_ += text.size() + 1;

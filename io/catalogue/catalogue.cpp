@@ -150,7 +150,8 @@ void follow_and_find(const std::string& index_path, const fs::path& folder, cons
   Index index{index_path};
   Follower{index, folder, progress}.follow(found);
   found.entries = index.find(query);
-  found.match_count = query.most ? index.count(query) : found.entries.size();
+  // Another search may have changed the index in between.
+  found.match_count = std::max(query.most ? index.count(query) : 0, found.entries.size());
   found.unread = index.unread();
 }
 

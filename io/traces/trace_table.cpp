@@ -52,8 +52,8 @@ struct Rows {
   std::vector<Row> rows;
   std::string text;                  ///< Of all fields.
   std::vector<std::size_t> ends;     ///< Of each field, in text.
-  bool is_end = false;               ///< No rows follow,
-  std::optional<base::Error> error;  ///< since the file could not be read further.
+  bool is_end = false;               ///< No rows follow.
+  std::optional<base::Error> error;  ///< Why the file could not be read further; then is_end.
 };
 
 /// Splits the lines of a table into fields.
@@ -65,8 +65,10 @@ class RowSplitter {
   /// The next rows.
   Rows next() {
     constexpr std::size_t kMost = std::size_t{1} << 14U;
+    constexpr std::size_t kMostBytes = std::size_t{1} << 20U;
     Rows rows;
-    while (rows.rows.size() < kMost) {
+    while (rows.rows.size() < kMost &&
+           rows.text.size() + rows.ends.size() * sizeof(std::size_t) < kMostBytes) {
       const auto more = file_.next(line_);
       rows.is_end = !more || !*more;
       if (!more) rows.error = more.error();

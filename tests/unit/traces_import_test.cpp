@@ -110,7 +110,6 @@ TEST_F(TraceImport, TextBetweenScansIsRefused) {
                  ":7: column 'F' is 'abc', and scans follow in line 8");
 }
 
-// As where a program changed its decimal mark.
 TEST_F(TraceImport, LongTablesAreReadInPiecesThatDoNotShow) {
   expect_values("t (s),F\n" + rows(0, 40'000) + "\"400.00\",\"40001\n\"\n", values(40'001));
   expect_refused("t (s),F\n" + rows(0, 20'000) + "event,x\n" + rows(20'000, 40'000),
@@ -121,6 +120,7 @@ TEST_F(TraceImport, LongTablesAreReadInPiecesThatDoNotShow) {
   expect_refused("t (s),F\n" + rows(0, 20'000) + std::string(2 << 20, '1'), ":20002: the line is longer");
 }
 
+// As where a program changed its decimal mark.
 TEST_F(TraceImport, HalfATraceIsNoFooter) {
   std::string content = "t (s);F\n";
   for (int i = 0; i < 400; ++i) content += fmt::format("{:.4f};1{}25\n", 0.01 * i, i < 200 ? '.' : ',');
