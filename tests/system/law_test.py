@@ -129,6 +129,9 @@ class Law(unittest.TestCase):
             beta = found["parameters"]["beta"]
             self.assertLess(abs(beta["value"] - 0.02), 3 * beta["standard_error"])
             self.assertLess(beta["standard_error"], 0.001)
+            # S of the test is that of the slips between the holds, after 85 ms; with the others it would be 0.393.
+            results = json.loads(run(CLI, "show", file, "--json").stdout)["results"]
+            self.assertLess(abs(results["mu_s"] - 0.3887), 0.001)
             rests = [test["stick_time"] for test in found["tests"]]
             for rest, hold in zip(rests[1:], (1, 3, 10, 30)):
                 self.assertLess(abs(rest - hold), 0.12)  # With the rise after it.

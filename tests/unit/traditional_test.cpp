@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -54,6 +55,24 @@ TEST(Traditional, StaticIsTheLargestScanOfTheFirstPeak) {
   trace.value[30] = 0.40;  // another peak
   const TraditionalCoefficients found = traditional_coefficients(trace, slips_at_the_peaks(15), {});
   EXPECT_EQ(found.static_coefficient.value, 0.37);
+}
+
+TEST(Traditional, KineticIsNoMeanOverAHold) {
+  estimate::Trace trace = oscillation(400);
+  for (std::size_t k = 100; k < 130; ++k) trace.value[k] = 0.2;
+  // Between scans 99 and 100, and 129 and 130.
+  const double stop_s = 99.5 / kScanRate_Hz;
+  const double go_s = 129.5 / kScanRate_Hz;
+  const auto held =
+      model::PullSpeed::make({{0.0, 0.005}, {stop_s, 0.005}, {stop_s, 0.0}, {go_s, 0.0}, {go_s, 0.005}});
+  trace.belt = model::BeltMotion{*held, 0.0};
+  std::vector<double> pulled;
+  for (std::size_t k = kFirstPeak; k < kFirstPeak + 10 * kPeriod; ++k) {
+    if (k < 100 || k >= 130) pulled.push_back(trace.value[k]);
+  }
+  const double mean = std::accumulate(pulled.begin(), pulled.end(), 0.0) / static_cast<double>(pulled.size());
+  const TraditionalCoefficients found = traditional_coefficients(trace, slips_at_the_peaks(15), {});
+  EXPECT_NEAR(*found.kinetic_coefficient.value, mean, 1e-12);
 }
 
 TEST(Traditional, TraceThatBeginsWhileTheSledSlidesIsKnown) {
