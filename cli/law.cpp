@@ -213,7 +213,7 @@ Json estimate_json(const analysis::Estimate& value, const char* unit) {
 
 Json coefficient_json(const std::optional<law::Value>& value, const std::optional<double>& off) {
   if (!value) return nullptr;
-  Json json = estimate_json({value->value, value->error, value->systematic, {}}, "1");
+  Json json = estimate_json({value->value, value->error, std::abs(value->systematic), {}}, "1");
   json["residual"] = io::or_null(off);
   return json;
 }
@@ -258,6 +258,7 @@ Json json_of(const Shown& shown) {
         {{"file", shown.material.tests[shown.tests.measured[i]].file},
          {"pull_speed", test.pull_speed_m_per_s},
          {"stick_time", io::or_null(test.stick_time_s)},
+         {"held", test.held},
          {"mu_s", coefficient_json(test.S, residual(found.ageing, has_ageing(found.law), i))},
          {"mu_k", coefficient_json(test.K, residual(found.rate, has_rate(found.law), i))}});
   }
@@ -333,7 +334,7 @@ Result<std::string> run_law(const LawOptions& options) {
 constexpr const char* kLawExamples =
     R"(Names the friction law of a paper from tests at several pull speeds: are S and K constant, does S grow with the time
 at rest before a slip, does K change with the speed? Says so where the tests cannot tell, and which pull would.
-Needs four tests at two speeds; docs/friction-laws.md says how to plan them.
+Needs four tests at two speeds, or one with holds; docs/friction-laws.md says how to plan them.
 
 Examples:
   stickslip law records/*.h5

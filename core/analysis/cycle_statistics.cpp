@@ -12,6 +12,7 @@
 #include <boost/math/distributions/students_t.hpp>
 
 #include "core/analysis/slip_estimator.hpp"
+#include "core/analysis/slip_windows.hpp"
 #include "core/detect/fall_finder.hpp"
 #include "core/signal/statistics.hpp"
 #include "core/signal/wandering_mean.hpp"
@@ -26,11 +27,17 @@ constexpr std::size_t kFewestPeriods = 3;
 /// not corrected costs more: it makes the first slip of a short ring-down look captured.
 constexpr double kDriftLevel = 0.01;
 
-/// From one peak to the next, without a break between.
+/// Whether a cycle ends at the next slip: without a break and without a hold between them.
+bool goes_on(const estimate::Trace& trace, const detect::Fall& slip, const detect::Fall& next) {
+  return !estimate::is_broken(trace, slip.peak_at, next.peak_at) && !is_held_between(trace, slip, next);
+}
+
+/// From one peak to the next.
 std::size_t whole_cycles(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips) {
   std::size_t count = slips.size() - std::min<std::size_t>(slips.size(), 1);
-  for (std::size_t i = 0; !trace.breaks.empty() && i + 1 < slips.size(); ++i) {
-    if (estimate::is_broken(trace, slips[i].peak_at, slips[i + 1].peak_at)) --count;
+  const bool whole = trace.breaks.empty() && trace.belt.is_constant();
+  for (std::size_t i = 0; !whole && i + 1 < slips.size(); ++i) {
+    if (!goes_on(trace, slips[i], slips[i + 1])) --count;
   }
   return count;
 }
@@ -51,7 +58,7 @@ Estimate drift_of(const estimate::Trace& trace, const base::LongColumn<detect::F
   // Worked out twice, for the mean and for the slope: there may be more than memory should hold.
   const auto for_each_mean = [&](const auto& take) {
     for (std::size_t i = 0; i + 1 < slips.size(); ++i) {
-      if (estimate::is_broken(trace, slips[i].peak_at, slips[i + 1].peak_at)) continue;
+      if (!goes_on(trace, slips[i], slips[i + 1])) continue;
       const auto first = static_cast<std::size_t>(std::lround(slips[i].peak_at));
       const auto end = static_cast<std::size_t>(std::lround(slips[i + 1].peak_at));
       double mean = 0.0;
@@ -172,7 +179,7 @@ void period_results(const estimate::Trace& trace, const base::LongColumn<detect:
     return estimate::time_at(trace, slips[slip + 1].peak_at) - estimate::time_at(trace, slips[slip].peak_at);
   };
   for (std::size_t i = 0; count + 1 < slips.size() && i + 1 < slips.size(); ++i) {
-    if (estimate::is_broken(trace, slips[i].peak_at, slips[i + 1].peak_at)) {
+    if (!goes_on(trace, slips[i], slips[i + 1])) {
       broken_s += from_to(i);
     } else {
       first_slips.push_back(i);

@@ -23,20 +23,19 @@ constexpr std::size_t kFewestStill = 8;
 constexpr double kCreepOfHold = 0.25;
 /// Scatter of a force at rest over the noise of a scan: a sled that slides on paper is rougher.
 constexpr double kRestingSigmas = 2.0;
-/// Part of a rise in which its line is found: below and above it is rounded.
+/// Part of a rise at either end in which its line is not looked for: there it is rounded.
 constexpr double kRiseFrom = 0.2;
-constexpr double kRiseTo = 0.8;
+/// Nor so near to a level that stands still, over the noise of a scan.
+constexpr double kClearSigmas = 3.0;
 
 struct StraightLine {
   double middle_s = 0.0;
   double middle = 0.0;
   double slope_per_s = 0.0;
-  double squares = 0.0;  ///< Of the residuals, over the scans.
 
   [[nodiscard]] double time_at(double level) const noexcept {
     return middle_s + (level - middle) / slope_per_s;
   }
-  [[nodiscard]] double at(double time_s) const noexcept { return middle + slope_per_s * (time_s - middle_s); }
 };
 
 /// Through the usable scans of [first, end) whose values lie within [low, high].
@@ -46,7 +45,6 @@ std::optional<StraightLine> line_through(const estimate::Trace& trace, std::size
   StraightLine line;
   double tt = 0.0;
   double tc = 0.0;
-  double cc = 0.0;
   for (std::size_t k = first; k < end; ++k) {
     const double c = trace.value[k];
     if (trace.usable[k] == 0 || c < low || c > high) continue;
@@ -57,12 +55,29 @@ std::optional<StraightLine> line_through(const estimate::Trace& trace, std::size
     line.middle += c_off / n;
     tt += t_off * (trace.time_s[k] - line.middle_s);
     tc += t_off * (c - line.middle);
-    cc += c_off * (c - line.middle);
   }
   if (n < 3.0 || !(tt > 0.0)) return std::nullopt;
   line.slope_per_s = tc / tt;
-  line.squares = std::max(cc - tc * line.slope_per_s, 0.0) / n;
   return line;
+}
+
+/// Median of the scans from first to last.
+double level_about(const estimate::Trace& trace, std::size_t first, std::size_t last) {
+  std::vector<double> levels;
+  for (std::size_t k = first; k <= last; ++k) levels.push_back(trace.value[k]);
+  return signal::median(levels);
+}
+
+/// Noise of a scan in [first, end), by the second differences of neighbours, whatever the level does slowly.
+double roughness(const estimate::Trace& trace, std::size_t first, std::size_t end) {
+  constexpr double kOfNoise = 6.0;  // Variance of c₋ − 2c + c₊ over that of c.
+  signal::RunningMean squares;
+  for (std::size_t k = first + 1; k + 1 < end; ++k) {
+    if (trace.usable[k - 1] == 0 || trace.usable[k] == 0 || trace.usable[k + 1] == 0) continue;
+    const double bend = trace.value[k - 1] - 2.0 * trace.value[k] + trace.value[k + 1];
+    squares.add(bend * bend / kOfNoise);
+  }
+  return std::sqrt(squares.mean);
 }
 
 /// Medians over the slips, or over a thousand of them.
@@ -89,6 +104,14 @@ std::optional<Typical> typical_of(const base::LongColumn<detect::Fall>& slips) {
   return Typical{signal::median(falls), signal::median(rises), signal::median(heights)};
 }
 
+/// Where the line of a rise meets a level; nothing if it has no line of about the usual slope.
+std::optional<double> meets_s(const std::optional<StraightLine>& rise, double level, double slope_per_s) {
+  constexpr double kUsual = 2.0;
+  if (!rise || rise->slope_per_s < slope_per_s / kUsual || rise->slope_per_s > slope_per_s * kUsual)
+    return std::nullopt;
+  return rise->time_at(level);
+}
+
 /// The rise from scan `from` to the peak of `next`, if the belt stood still in it.
 std::optional<Hold> hold_between(const estimate::Trace& trace, std::size_t from, const detect::Fall& next,
                                  double trough, const Typical& typical, double sigma) {
@@ -103,25 +126,23 @@ std::optional<Hold> hold_between(const estimate::Trace& trace, std::size_t from,
   const std::size_t end = peak - rising;
   if (end < still + kFewestStill || estimate::is_broken(trace, static_cast<double>(from), next.peak_at))
     return std::nullopt;
-  const auto level = line_through(trace, still, end, -HUGE_VAL, HUGE_VAL);
-  if (!level || std::sqrt(level->squares) > kRestingSigmas * sigma) return std::nullopt;
-  const double at_stop = level->at(trace.time_s[still]);
-  const double at_go = level->at(trace.time_s[end]);
-  if (std::abs(at_go - at_stop) > kCreepOfHold * height) return std::nullopt;
-  Hold hold{trace.time_s[from], trace.time_s[end]};
+  const double at_stop = level_about(trace, still, still + (end - still) / 8);
+  const double at_go = level_about(trace, end - (end - still) / 8, end);
+  // A contact at rest creeps, fast at first: its roughness is that from scan to scan.
+  if (std::abs(at_go - at_stop) > kCreepOfHold * height ||
+      roughness(trace, still, end) > kRestingSigmas * sigma)
+    return std::nullopt;
+  const double slope_per_s = typical.height / typical.rise * scans_per_s(trace);
+  const auto rise_between = [&](std::size_t first, std::size_t last, double low, double high) {
+    const double margin = std::max(kRiseFrom * (high - low), kClearSigmas * sigma);
+    return line_through(trace, first, last, low + margin, high - margin);
+  };
   // A belt that stops during the slip leaves the force at its trough.
-  const auto before = line_through(trace, from, still, trough + kRiseFrom * (at_stop - trough),
-                                   trough + kRiseTo * (at_stop - trough));
-  if (at_stop - trough > kRiseFrom * height && before && before->slope_per_s > 0.0)
-    hold.stop_s = std::max(before->time_at(at_stop), trace.time_s[from]);
-  const auto after = line_through(trace, end, peak, at_go + kRiseFrom * (next.peak - at_go),
-                                  at_go + kRiseTo * (next.peak - at_go));
-  if (after && after->slope_per_s > 0.0) {
-    hold.go_s = after->time_at(at_go);
-  } else {
-    // So high a hold leaves no scans of the rise after it.
-    hold.go_s = trace.time_s[peak] - (next.peak - at_go) / typical.height * typical.rise / scans_per_s(trace);
-  }
+  Hold hold{trace.time_s[from], trace.time_s[peak] - (next.peak - at_go) / slope_per_s};
+  if (const auto stop_s = meets_s(rise_between(from, still, trough, at_stop), at_stop, slope_per_s))
+    hold.stop_s = std::clamp(*stop_s, trace.time_s[from], trace.time_s[still]);
+  if (const auto go_s = meets_s(rise_between(end, peak, at_go, next.peak), at_go, slope_per_s))
+    hold.go_s = std::clamp(*go_s, trace.time_s[end], trace.time_s[peak]);
   return hold.stop_s < hold.go_s ? std::optional{hold} : std::nullopt;
 }
 
@@ -154,7 +175,7 @@ std::optional<model::PullSpeed> course_with_holds(double pull_speed_m_per_s, dou
   return model::PullSpeed::make(std::move(points));
 }
 
-base::Finding holds_finding(const std::vector<Hold>& holds, bool speed_is_known) {
+base::Finding holds_finding(const std::vector<Hold>& holds, bool left_out, bool speed_is_known) {
   double shortest_s = holds.front().go_s - holds.front().stop_s;
   double longest_s = shortest_s;
   for (const Hold& hold : holds) {
@@ -166,9 +187,11 @@ base::Finding holds_finding(const std::vector<Hold>& holds, bool speed_is_known)
                                                             shortest_s, longest_s);
   return base::make_finding(
       base::FindingCode::kHolds,
-      fmt::format("the belt stood still {}: {}", times,
-                  speed_is_known ? "S and S - K are those of the slips between the holds"
-                                 : "give the pull speed, without which no fit takes the holds into account"),
+      fmt::format("the belt stood still {}{}", times,
+                  left_out ? ": S and S - K are those of the slips between the holds"
+                  : speed_is_known
+                      ? ""
+                      : ": give the pull speed, without which nothing takes the holds into account"),
       {{"holds", static_cast<double>(holds.size()), "1"},
        {"shortest", shortest_s, "s"},
        {"longest", longest_s, "s"}});

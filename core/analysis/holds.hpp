@@ -23,8 +23,8 @@ struct Hold {
 };
 
 /// Holds between slips: the force takes at least three times as long from a trough to the next peak as it
-/// needs at the rate of the other rises, and stands still in between. The moments of stop and go are where
-/// the level of the hold meets the two rises.
+/// needs at the rate of the other rises, and stands still in between, but for creep. The moments of stop and
+/// go are where the level of the hold meets the two rises. A sled that slid as smoothly looks the same.
 /// \param slips  in the order of time. \param sigma  noise of a scan. \return in the order of time.
 [[nodiscard]] std::vector<Hold> find_holds(const estimate::Trace& trace,
                                            const base::LongColumn<detect::Fall>& slips, double sigma);
@@ -34,7 +34,7 @@ struct Hold {
 [[nodiscard]] std::optional<model::PullSpeed> course_with_holds(double pull_speed_m_per_s, double begin_s,
                                                                 const std::vector<Hold>& holds);
 
-/// Code kHolds. \param holds  not empty.
-[[nodiscard]] base::Finding holds_finding(const std::vector<Hold>& holds, bool speed_is_known);
+/// Code kHolds. \param holds  not empty. \param left_out  the slips after them are not in S and S − K.
+[[nodiscard]] base::Finding holds_finding(const std::vector<Hold>& holds, bool left_out, bool speed_is_known);
 
 }  // namespace stickslip::analysis

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/analysis/model_results.hpp"
+#include "core/analysis/slip_windows.hpp"
 #include "core/analysis/tier_means.hpp"
 #include "core/base/nan.hpp"
 #include "core/signal/statistics.hpp"
@@ -72,6 +73,7 @@ TestEstimates estimates_from_live(const estimate::Trace& trace, const base::Long
     const detect::Fall slip = slips[i];
     const bool is_last = i + 1 == slips.size();
     const bool is_slack = !is_last && settlement.slack.holds(trace, slip);
+    const bool is_held = i > 0 && is_held_between(trace, slips[i - 1], slip);
     const bool has_next = !is_last && !estimate::is_broken(trace, slip.peak_at, slips[i + 1].peak_at);
     detect::Cycle row = row_of(trace, slip);
     const double period_s =
@@ -82,13 +84,13 @@ TestEstimates estimates_from_live(const estimate::Trace& trace, const base::Long
       // Also of one that was not decided: what hardly speaks against sticking leaves the regime undecided.
       row.capture_evidence = cycle->evidence;
       has_gap = has_gap || (row.flags & detect::kCycleHasGap) != 0;
-      if (!is_slack) means.add(*cycle);
+      if (!is_slack && !is_held) means.add(*cycle);
     }
     if (has_gap || after_gap) forget_end(row);
     after_gap = has_gap;
     row.number = static_cast<std::int64_t>(i);
     row.flags &= detect::kCycleCaptured;
-    if (i == 0) row.flags |= detect::kCycleIsFirst;
+    if (i == 0 || is_held) row.flags |= detect::kCycleIsFirst;
     if (!trace.belt.is_constant()) {
       const double at_s = std::isfinite(row.onset_time_s) ? row.onset_time_s : row.peak_time_s;
       row.pull_speed_m_per_s = trace.belt.plan().speed_m_per_s(at_s - trace.belt.start_s());
@@ -100,7 +102,7 @@ TestEstimates estimates_from_live(const estimate::Trace& trace, const base::Long
     if (before) keep(is_next ? row.peak_time_s - before->peak_time_s : base::kNaN);
     before = row;
     is_next = has_next;
-    if (!is_slack) means.add_level(slip.peak, slip.trough);
+    if (!is_slack && !is_held) means.add_level(slip.peak, slip.trough);
     amplitude.add(0.5 * slip.drop());
   }
   keep(base::kNaN);

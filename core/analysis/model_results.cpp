@@ -64,13 +64,6 @@ void take(const estimate::UniformFit& uniform, Fitted& fitted) {
   fitted.of_noise = fitted.covariance;
 }
 
-/// Whether the belt stood still between two slips.
-bool is_held_between(const model::BeltMotion& belt, const estimate::SlipWindow& before,
-                     const estimate::SlipWindow& after) {
-  const std::size_t pull = belt.pull_of(after.slip.onset_s);
-  return pull != belt.pull_of(before.slip.onset_s) && belt.held_from_s(pull);
-}
-
 /// Slips that count in the means: not the first and none after a hold if there are others (unless the first
 /// is kept), and none whose S − K its few scans — a gap, spikes, the end of the pull — leave more uncertain
 /// than the typical S − K itself is large.
@@ -78,7 +71,8 @@ std::vector<estimate::SlipWindow> slips_that_count(const SlipEstimates& estimate
   const std::vector<estimate::SlipWindow>& all = estimates.windows;
   std::vector<estimate::SlipWindow> windows;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const bool rested_longer = i == 0 || is_held_between(estimates.belt, all[i - 1], all[i]);
+    const bool rested_longer =
+        i == 0 || estimates.belt.is_held_between(all[i - 1].slip.onset_s, all[i].slip.onset_s);
     if (estimates.first_counts || !rested_longer) windows.push_back(all[i]);
   }
   if (all.size() < kEnoughToLeaveOutTheFirst || windows.empty()) windows = all;
@@ -482,7 +476,7 @@ void model_results(std::span<const detect::Fall> slips, const SlipEstimates& est
                                       : Estimate::none("fewer than three slips to compare");
 
   results.slip_speed_ratio_threshold =
-      estimates.belt.is_constant()
+      estimates.belt.has_one_speed()
           ? derived(fitted, [](const P& p) { return model::slip_speed_ratio_threshold(p[1] / (2.0 * p[0])); })
           : Estimate::none(std::string{kSpeedChanges});
   const double delta_mu = fitted.value[3] - fitted.value[4];
@@ -492,7 +486,7 @@ void model_results(std::span<const detect::Fall> slips, const SlipEstimates& est
     return;
   }
   results.Q =
-      estimates.belt.is_constant()
+      estimates.belt.has_one_speed()
           ? derived(fitted, [](const P& p) { return model::dimensionless_speed(p[2], p[0], p[3] - p[4]); })
           : Estimate::none(std::string{kSpeedChanges});
   if (!(shared.gamma > 0.0)) {
@@ -515,12 +509,9 @@ std::vector<detect::Cycle> cycle_table(const estimate::Trace& trace, std::span<c
   double last_capture_s = base::kNaN;
   for (std::size_t i = 0; i < slips.size(); ++i) {
     const detect::Fall& slip = slips[i];
-    const auto held_from_s =
-        begins_a_pull(trace, slips, i) ? trace.belt.held_from_s(pull_of(trace, slip)) : std::nullopt;
-    // The belt may have stopped during the slip before.
-    if (held_from_s)
-      last_capture_s =
-          std::max(*held_from_s, estimate::time_at(trace, trough_at(trace, slips[i - 1], fit.shared)));
+    const bool held = i > 0 && is_held_between(trace, slips[i - 1], slip);
+    // How the slip before the hold ended is not known; its trough is near its capture.
+    if (held) last_capture_s = estimate::time_at(trace, trough_at(trace, slips[i - 1], fit.shared));
     detect::Cycle cycle;
     cycle.number = static_cast<std::int64_t>(i);
     cycle.peak_time_s = estimate::time_at(trace, slip.peak_at);
@@ -534,7 +525,7 @@ std::vector<detect::Cycle> cycle_table(const estimate::Trace& trace, std::span<c
     cycle.onset_time_s = cycle.capture_time_s = cycle.stick_time_s = cycle.slip_time_s = base::kNaN;
     cycle.delta_mu = cycle.delta_mu_standard_error = cycle.slip_speed_ratio = base::kNaN;
     cycle.pull_speed_m_per_s = base::kNaN;
-    if (i == 0 || held_from_s) cycle.flags |= detect::kCycleIsFirst;
+    if (i == 0 || held) cycle.flags |= detect::kCycleIsFirst;
     const bool captured = estimates.ends[i] == SlipEnd::kCaptured;
     if (captured) cycle.flags |= detect::kCycleCaptured;
     const bool begins_from_stick = i == 0 || estimates.window_of_slip[i] != estimates.window_of_slip[i - 1];

@@ -30,9 +30,11 @@ struct RestGroup {
   double pull_speed_m_per_s = 0.0;  ///< Mean.
   double stick_time_s = 0.0;        ///< Geometric mean.
   double delta_mu = 0.0;            ///< Mean.
-  /// Of that mean, without what all slips share (omega, gamma); of a single slip with the scatter of the
-  /// others.
+  /// Of that mean by the scatter from slip to slip; of a single slip that scatter.
   double delta_mu_error = 0.0;
+  /// Part of S − K by which that of all slips of the test may be off together, by omega, gamma and stick
+  /// rate.
+  double shared_part = 0.0;
   double K = 0.0;        ///< Mean of the slips at this speed that follow no hold.
   double K_error = 0.0;  ///< Of that mean against those of other speeds.
   bool held = false;     ///< A single slip after a hold.
@@ -55,10 +57,11 @@ template <typename Cycles>
 }
 
 /// Each slip after a hold is a group of its own: it has its place on the paper and its time at rest. The
-/// others are grouped by their speed (within kSameSpeed); fewer than four at one speed make no group, as on a
-/// ramp. Slips after a hold at a speed without a group are left out. K of a speed is the test's K and by how
-/// much the middles of the falls at this speed lie off the mean of all. \param results  of the test. \return
-/// empty where they have no K or no damping.
+/// others are grouped by their speed: speeds that follow each other within kSameSpeed are one, unless they
+/// spread further, as on a ramp; fewer than four slips make no group. Slips after a hold at a speed without a
+/// group are left out. K of a speed is the test's K and by how much the middles of the falls at this speed
+/// lie off the mean of all. \param results  of the test. \return empty where they have no K. Without a
+/// damping the typical one stands for it.
 [[nodiscard]] std::vector<RestGroup> group_by_rest(std::span<const RestedSlip> slips,
                                                    const TestResults& results);
 

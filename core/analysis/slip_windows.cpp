@@ -41,9 +41,7 @@ bool pull_ended_in_last_slip(const estimate::Trace& trace, std::span<const detec
 std::size_t end_of_pull(const estimate::Trace& trace, const detect::Fall& slip) {
   if (trace.belt.is_constant()) return trace.size();
   const double end_s = trace.belt.pull_end_s(pull_of(trace, slip));
-  std::size_t end = std::min(scan_at(slip.peak_at), trace.size());
-  while (end < trace.size() && trace.time_s[end] < end_s) ++end;
-  return end;
+  return estimate::scan_at_or_after(trace, end_s, std::min(scan_at(slip.peak_at), trace.size()));
 }
 
 std::size_t boundary(const detect::Fall& before, const detect::Fall& after) {
@@ -63,6 +61,10 @@ std::size_t start_of_loading(const estimate::Trace& trace, const detect::Fall& f
   for (std::size_t k = start; k < peak; ++k) {
     if (trace.value[k] < level) start = k + 1;
   }
+  if (!trace.belt.is_constant()) {
+    const double pulls_s = trace.belt.pull_start_s(pull_of(trace, first));
+    while (start < peak && trace.time_s[start] < pulls_s) ++start;
+  }
   for (const std::size_t after_gap : trace.breaks) {
     if (after_gap <= peak) start = std::max(start, after_gap);
   }
@@ -71,6 +73,11 @@ std::size_t start_of_loading(const estimate::Trace& trace, const detect::Fall& f
 
 bool begins_a_pull(const estimate::Trace& trace, std::span<const detect::Fall> slips, std::size_t i) {
   return i == 0 || pull_of(trace, slips[i - 1]) != pull_of(trace, slips[i]);
+}
+
+bool is_held_between(const estimate::Trace& trace, const detect::Fall& before, const detect::Fall& after) {
+  return trace.belt.is_held_between(estimate::time_at(trace, before.peak_at),
+                                    estimate::time_at(trace, after.peak_at));
 }
 
 bool follows_a_break(const estimate::Trace& trace, std::span<const detect::Fall> slips, std::size_t i) {

@@ -18,6 +18,9 @@ namespace stickslip::analysis {
 /// Whether slip i is the first of the test, or the first after a stop of the belt.
 [[nodiscard]] bool begins_a_pull(const estimate::Trace& trace, std::span<const detect::Fall> slips,
                                  std::size_t i);
+/// Whether the belt stood still between two slips.
+[[nodiscard]] bool is_held_between(const estimate::Trace& trace, const detect::Fall& before,
+                                   const detect::Fall& after);
 /// Whether a break lies between slip i − 1 and slip i, or in the rise to the first slip.
 [[nodiscard]] bool follows_a_break(const estimate::Trace& trace, std::span<const detect::Fall> slips,
                                    std::size_t i);

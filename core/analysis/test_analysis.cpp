@@ -480,7 +480,7 @@ TestEstimates TestAnalysis::estimate(estimate::Trace& trace, const base::LongCol
     return with;
   };
   if (!settings_.prior.coupling) {
-    if (!alone.model_describes && trace.belt.is_constant()) {
+    if (!alone.model_describes && trace.belt.has_one_speed()) {
       TestEstimates typical = held(held_damping(trace, slips));
       if (typical.model_describes && may_hold_damping(typical.results)) {
         tell_held_damping(typical.results);
@@ -546,7 +546,7 @@ Estimate TestAnalysis::mu_slope(const estimate::Trace& trace, const base::LongCo
 
 void TestAnalysis::speed_results(const estimate::Trace& trace, const TestEstimates& estimates,
                                  TestResults& results) const {
-  if (!trace.belt.is_constant()) {
+  if (!trace.belt.has_one_speed()) {
     results.pull_speed_measured = Estimate::none("the pull speed changes during the test");
     return;
   }

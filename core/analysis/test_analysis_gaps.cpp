@@ -138,13 +138,13 @@ void TestAnalysis::follow_holds(estimate::Trace& trace, base::LongColumn<detect:
   if (measured_speed_ || settings_.tester.speed_course || settings_.method.speed_course) return;
   const std::vector<Hold> holds = find_holds(trace, slips, sigma);
   if (holds.empty()) return;
-  base::add(results.findings, holds_finding(holds, speed.has_value()));
-  if (!speed) return;
   const double begin_s = std::as_const(trace.time_s)[0];
-  if (auto course = course_with_holds(*speed, begin_s, holds)) {
-    trace.belt = model::BeltMotion{*std::move(course), begin_s};
-    keep_pulled(trace, slips, settings_.scratch_folder);
-  }
+  auto course = speed ? course_with_holds(*speed, begin_s, holds) : std::nullopt;
+  base::add(results.findings,
+            holds_finding(holds, course && !settings_.skipped.first_slip, speed.has_value()));
+  if (!course) return;
+  trace.belt = model::BeltMotion{*std::move(course), begin_s};
+  keep_pulled(trace, slips, settings_.scratch_folder);
 }
 
 }  // namespace stickslip::analysis

@@ -16,12 +16,13 @@ namespace {
 constexpr std::ptrdiff_t kFirstScans = 5;
 
 /// Mean of the usable scans in [first, end) but those during which the belt stood still, without large sums.
-double mean_of(const estimate::Trace& trace, std::size_t first, std::size_t end) {
+Estimate mean_of(const estimate::Trace& trace, std::size_t first, std::size_t end) {
   signal::RunningMean mean;
   for (std::size_t k = first; k < end; ++k) {
     if (trace.usable[k] != 0 && trace.belt.relative(trace.time_s[k]) != 0.0) mean.add(trace.value[k]);
   }
-  return mean.mean;
+  return mean.count > 0.0 ? Estimate::of(mean.mean)
+                          : Estimate::none("the belt stood still in the whole window");
 }
 
 /// Scans between the first and the last at or above half the largest: what is before is loading, what
@@ -63,8 +64,8 @@ Estimate mean_of_cycles(const estimate::Trace& trace, const base::LongColumn<det
     }
     end_s = wanted_end_s;
   }
-  return Estimate::of(mean_of(trace, estimate::scan_at_or_after(trace, begin_s, 0),
-                              estimate::scan_at_or_after(trace, end_s, 0)));
+  return mean_of(trace, estimate::scan_at_or_after(trace, begin_s, 0),
+                 estimate::scan_at_or_after(trace, end_s, 0));
 }
 
 /// \param start_s  of the travel.
@@ -82,7 +83,7 @@ Estimate mean_of_travel(const estimate::Trace& trace, double start_s, const mode
       estimate::scan_at_or_after(trace, start_s + window.from_m / *pull_speed_m_per_s, 0);
   const std::size_t end = estimate::scan_at_or_after(trace, end_s, first);
   if (first == end) return Estimate::none("no scan within the method's travel");
-  return Estimate::of(mean_of(trace, first, end));
+  return mean_of(trace, first, end);
 }
 
 }  // namespace
@@ -106,7 +107,7 @@ TraditionalCoefficients traditional_coefficients(const estimate::Trace& trace,
     result.kinetic_coefficient =
         method.kinetic_travel
             ? mean_of_travel(trace, trace.time_s[first], *method.kinetic_travel, pull_speed_m_per_s)
-            : Estimate::of(mean_of(trace, first, end));
+            : mean_of(trace, first, end);
     return result;
   }
   const auto wanted = static_cast<std::size_t>(method.static_slip);

@@ -57,7 +57,7 @@ constexpr std::array<FindingKind, kFindingCodes> kKinds{{
      "The first scans are in mid-pull: the peak before the first slip is not among them",
      "record from before the pull where the static coefficient is wanted"},
     {kHolds, "holds", "plan", kNote, "The belt stood still while the sled rested, and pulled on",
-     "none where the test is one of holds: stickslip law takes the slips after them"},
+     "none where the test is one of holds, which stickslip law takes; else look whether the belt stops"},
     {kZeroOffset, "zero-offset", "zero", kWarning,
      "The unloaded cell read more than 0.0025 of the sled's weight before or after the test",
      "tare before the next test"},

@@ -16,6 +16,10 @@
 /// - each that it has not is, by its 95 % interval and with what the systematic parts could hide, at most a
 ///   tenth of S − K over a decade of speed.
 ///
+/// The slips of one sheet count as a test for each hold and speed. What sheets differ by is seen as scatter
+/// between them, so that levels found from few sheets are surer than sheets allow; slopes are those within
+/// the sheets.
+///
 /// Tests whose speeds differ by at most 1 % have one speed: K is at their mean speed, S at their mean stick
 /// time. A slip after a hold counts with its own stick time, which the belt set.
 ///
@@ -38,8 +42,8 @@ namespace stickslip::law {
 /// A coefficient as one test gives it.
 struct Value {
   double value = 0.0;
-  double error = 0.0;  ///< > 0
-  double systematic = 0.0;
+  double error = 0.0;       ///< > 0
+  double systematic = 0.0;  ///< Moves with those of the other tests; below 0: the other way.
 };
 
 /// One test at one speed, or the slips of one speed or of one hold in a test that changes its speed. At least

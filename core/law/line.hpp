@@ -19,7 +19,7 @@ struct Point {
   double x = 0.0;
   double y = 0.0;
   double error = 0.0;       ///< Standard error, > 0.
-  double systematic = 0.0;  ///< ≥ 0; common to all points in its sign: it shifts them together.
+  double systematic = 0.0;  ///< By how much it moves where all points move together.
 };
 
 struct Parameter {

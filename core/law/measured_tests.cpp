@@ -16,13 +16,20 @@ using analysis::MeasuredTest;
 /// Of values none of which has an error: the scatter between tests tells it.
 constexpr double kLeastError = 1e-6;
 
+/// A test with holds, or at several speeds.
+bool counts_by_rests(const MeasuredTest& test) {
+  const bool held = std::any_of(test.rests.begin(), test.rests.end(),
+                                [](const analysis::RestGroup& group) { return group.held; });
+  return held || (!test.rests.empty() && test.results.Q.reason == analysis::kSpeedChanges);
+}
+
 /// Why the test counts for nothing; empty: it counts.
 std::string refusal(const MeasuredTest& test) {
   const std::string_view repeated = base::kind_of(base::FindingCode::kRepeatedScans).name;
   for (const base::Finding& finding : test.results.findings) {
     if (finding.severity == base::Severity::kFault || finding.code == repeated) return finding.text;
   }
-  if (!test.rests.empty()) return {};
+  if (counts_by_rests(test)) return {};
   if (test.results.Q.reason == analysis::kSpeedChanges)
     return std::string{analysis::kSpeedChanges} + ": S and K are means over many";
   if (!test.pull_speed_m_per_s || !(*test.pull_speed_m_per_s > 0.0)) return "the pull speed is not known";
@@ -41,32 +48,22 @@ std::optional<Value> value_of(const Estimate& estimate, analysis::Rung rung) {
   return value;
 }
 
-/// Error of S − K that all slips of a test share by omega, gamma and the stick rate, over S − K.
-double shared_part_of(const analysis::TestResults& results) {
-  const std::optional<double>& delta_mu = results.delta_mu.value;
-  return delta_mu && *delta_mu > 0.0 ? results.delta_mu.standard_error.value_or(0.0) / *delta_mu : 0.0;
-}
-
 /// \param test  with rests.
 std::vector<LawTest> tests_of_rests(const MeasuredTest& test) {
-  const analysis::TestResults& results = test.results;
-  const std::optional<Value> K = value_of(results.mu_k, results.rung);
-  const std::optional<Value> S = value_of(results.mu_s, results.rung);
-  const double shared = shared_part_of(results);
+  const std::optional<Value> K = value_of(test.results.mu_k, test.results.rung);
+  const std::optional<Value> S = value_of(test.results.mu_s, test.results.rung);
+  const double delta_mu = test.results.delta_mu.value.value_or(0.0);
   std::vector<LawTest> tests;
   for (const analysis::RestGroup& group : test.rests) {
     LawTest own;
     own.pull_speed_m_per_s = group.pull_speed_m_per_s;
     own.stick_time_s = group.stick_time_s;
     own.held = group.held;
-    const double of_all = shared * group.delta_mu;
-    const double own_part = group.delta_mu_error * group.delta_mu_error - of_all * of_all;
-    own.S = Value{group.K + group.delta_mu, std::sqrt(std::max(own_part, kLeastError * kLeastError)), 0.0};
-    // The scans tell S, and an error of S - K is one of K the other way: it counts where S - K differs.
-    if (S)
-      own.S->systematic =
-          std::hypot(S->systematic, S->error + shared * std::abs(group.delta_mu - (S->value - K->value)));
-    if (!group.held) own.K = Value{group.K, std::max(group.K_error, K->error), K->systematic};
+    own.S = Value{group.K + group.delta_mu, std::max(group.delta_mu_error, kLeastError), 0.0};
+    // The peaks tell S, so that K is off as far the other way as the mean S - K is: what is left moves an S
+    // by as much as its S - K differs from that mean, up or down.
+    own.S->systematic = (S ? S->systematic : 0.0) + group.shared_part * (group.delta_mu - delta_mu);
+    if (!group.held) own.K = Value{group.K, std::max(group.K_error, kLeastError), K->systematic};
     tests.push_back(own);
   }
   return tests;
@@ -92,7 +89,7 @@ LawTests tests_for_law(std::span<const MeasuredTest> measured) {
       result.left_out.push_back({i, "S and K", std::move(reason)});
       continue;
     }
-    if (!measured[i].rests.empty()) {
+    if (counts_by_rests(measured[i])) {
       for (const LawTest& rest : tests_of_rests(measured[i])) {
         result.tests.push_back(rest);
         result.measured.push_back(i);

@@ -21,7 +21,7 @@ struct LeftOut {
 
 struct LawTests {
   std::vector<LawTest> tests;
-  std::vector<std::size_t> measured;  ///< Index of each among all tests, rising.
+  std::vector<std::size_t> measured;  ///< Index of each among all tests; never falls.
   std::vector<LeftOut> left_out;
 };
 

@@ -33,7 +33,8 @@ inline constexpr double kLongestHold_s = 100.0;
 [[nodiscard]] SpeedRange usual_range(std::span<const LawTest> tests);
 
 /// About S if it cannot be told and a pull in the range sticks, else about K. Not about what its systematic
-/// part alone keeps from being told. Holds of up to kLongestHold_s are asked only where tests have some.
+/// part alone keeps from being told. A hold of kLongestHold_s is asked only where
+/// tests have holds.
 /// \param found  of these tests. \param highest_sticking_m_per_s  above it the sled does not stick again, so
 /// that S says nothing; absent: unknown. \return nullopt if no pull in the range would tell more.
 [[nodiscard]] std::optional<NextPull> next_pull(const FrictionLaw& found, std::span<const LawTest> tests,

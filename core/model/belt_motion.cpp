@@ -1,5 +1,6 @@
 #include "core/model/belt_motion.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -19,7 +20,12 @@ double first_time_s(double rate, double slope, double gain) noexcept {
 }  // namespace
 
 BeltMotion::BeltMotion(PullSpeed plan, double start_s)
-    : plan_(std::move(plan)), scale_(1.0 / plan_->largest_m_per_s()), start_s_(start_s) {}
+    : plan_(std::move(plan)), scale_(1.0 / plan_->largest_m_per_s()), start_s_(start_s) {
+  has_one_speed_ =
+      std::all_of(plan_->points().begin(), plan_->points().end(), [this](const SpeedPoint& point) {
+        return point.speed_m_per_s == 0.0 || point.speed_m_per_s == plan_->largest_m_per_s();
+      });
+}
 
 double BeltMotion::climbing_time_s(double r, double from_s, double gain) const noexcept {
   if (!plan_) return gain / r;
@@ -35,10 +41,12 @@ double BeltMotion::climbing_time_s(double r, double from_s, double gain) const n
 }
 
 std::size_t BeltMotion::pull_of(double time_s) const noexcept {
-  std::size_t pull = 0;
-  if (!plan_) return pull;
-  while (pull + 1 < plan_->pulls().size() && plan_->pulls()[pull + 1].start_s <= time_s - start_s_) ++pull;
-  return pull;
+  if (!plan_) return 0;
+  const std::vector<PullSpeed::Pull>& pulls = plan_->pulls();
+  const auto later =
+      std::upper_bound(pulls.begin() + 1, pulls.end(), time_s - start_s_,
+                       [](double t_s, const PullSpeed::Pull& pull) { return t_s < pull.start_s; });
+  return static_cast<std::size_t>(later - pulls.begin()) - 1;
 }
 
 double BeltMotion::pull_end_s(std::size_t pull) const noexcept {
@@ -56,6 +64,12 @@ std::optional<double> BeltMotion::held_from_s(std::size_t pull) const noexcept {
   constexpr double kNoWay = 1e-9;
   const double rest_s = pull_start_s(pull) - stop_s;
   return std::abs(way_s(stop_s, rest_s)) <= kNoWay * rest_s ? std::optional{stop_s} : std::nullopt;
+}
+
+bool BeltMotion::is_held_between(double before_s, double after_s) const noexcept {
+  if (!plan_) return false;
+  const std::size_t pull = pull_of(after_s);
+  return pull != pull_of(before_s) && held_from_s(pull).has_value();
 }
 
 const BeltMotion& constant_belt() noexcept {

@@ -27,6 +27,8 @@ class BeltMotion {
   BeltMotion(PullSpeed plan, double start_s);
 
   [[nodiscard]] bool is_constant() const noexcept { return !plan_; }
+  /// One speed throughout, but for the times at which the belt stands still.
+  [[nodiscard]] bool has_one_speed() const noexcept { return has_one_speed_; }
   /// The speed, planned or measured. Requires !is_constant().
   [[nodiscard]] const PullSpeed& plan() const noexcept { return *plan_; }
   [[nodiscard]] double start_s() const noexcept { return start_s_; }
@@ -76,10 +78,13 @@ class BeltMotion {
   /// When the belt stopped before a pull, if it stood still in between: the sled rested under load. Nullopt
   /// for the first pull, and where the belt went back.
   [[nodiscard]] std::optional<double> held_from_s(std::size_t pull) const noexcept;
+  /// Whether the belt stood still between two times of two pulls.
+  [[nodiscard]] bool is_held_between(double before_s, double after_s) const noexcept;
 
  private:
   std::optional<PullSpeed> plan_;
   double scale_ = 1.0;  ///< One over the largest speed.
+  bool has_one_speed_ = true;
   double start_s_ = 0.0;
   double drift_rate_per_s_ = 0.0;
 };

@@ -355,22 +355,26 @@ TEST(LawTests, ATestThatChangesItsSpeedCountsByItsRests) {
   test.results.delta_mu = analysis::Estimate::of(0.08, 8e-4);  // 1 % that all slips share
   const std::vector<analysis::MeasuredTest> ramp{test};
   ASSERT_EQ(tests_for_law(ramp).left_out.size(), 1U);
-  test.rests = {{0.001, 0.1, 0.08, 1e-4, 0.30, 2e-4, false}, {0.001, 10.0, 0.12, 2e-3, 0.30, 2e-4, true}};
+  test.rests = {{0.001, 0.1, 0.08, 1e-4, 0.01, 0.30, 2e-4, false},
+                {0.001, 10.0, 0.12, 2e-3, 0.01, 0.30, 2e-4, true}};
   const LawTests found = tests_for_law(std::vector{test});
   ASSERT_EQ(found.tests.size(), 2U);
   EXPECT_EQ(found.measured, (std::vector<std::size_t>{0, 0}));
   EXPECT_TRUE(found.left_out.empty());
   EXPECT_NEAR(found.tests[0].S->value, 0.38, 1e-12);
-  EXPECT_NEAR(found.tests[0].K->error, 3e-4, 1e-12);
+  EXPECT_NEAR(found.tests[0].S->error, 1e-4, 1e-12);
+  EXPECT_NEAR(found.tests[0].S->systematic, 4e-4, 1e-12);
+  EXPECT_NEAR(found.tests[0].K->error, 2e-4, 1e-12);
   EXPECT_FALSE(found.tests[0].held);
   EXPECT_TRUE(found.tests[1].held);
   EXPECT_FALSE(found.tests[1].K);
   EXPECT_NEAR(found.tests[1].S->value, 0.42, 1e-12);
-  // 2e-3 without the 1 % of 0.12; these count as far as S - K differs from that of the test, with the error
-  // of S.
-  EXPECT_NEAR(found.tests[1].S->error, 1.6e-3, 1e-12);
-  EXPECT_NEAR(found.tests[1].S->systematic, std::hypot(4e-4, 1e-4 + 0.01 * 0.04), 1e-12);
-  EXPECT_NEAR(found.tests[0].S->systematic, std::hypot(4e-4, 1e-4), 1e-12);
+  EXPECT_NEAR(found.tests[1].S->error, 2e-3, 1e-12);
+  // The 1 % that all slips share count as far as S - K differs from the mean one.
+  EXPECT_NEAR(found.tests[1].S->systematic, 4e-4 + 0.01 * 0.04, 1e-12);
+  test.rests.pop_back();
+  test.results.Q = analysis::Estimate::of(0.2);
+  EXPECT_EQ(tests_for_law(std::vector{test}).tests.size(), 0U);  // One speed, and no pull speed.
 }
 
 }  // namespace
