@@ -353,7 +353,8 @@ class Examination {
     auto read = history.read_on();
     const auto charts = read ? daemon::charts_now(history) : tl::unexpected(read.error());
     if (!charts) {
-      return warn("trend", charts.error().message, kDamagedHistory);
+      return warn("trend", charts.error().message,
+                  read ? "let this user read it; it says which tests are void" : kDamagedHistory);
     }
     if (!read->empty()) warn("trend", read->front(), kDamagedHistory);
     const std::vector<base::Finding> alarms = charts->findings();

@@ -170,7 +170,7 @@ void period_results(const estimate::Trace& trace, const base::LongColumn<detect:
   const std::size_t count = whole_cycles(trace, slips);
   if (count == 0) {
     results.period_median = results.oscillation_frequency =
-        Estimate::none("no two slips without a gap between");
+        Estimate::none("no two slips without a gap or a hold between");
     return;
   }
   std::vector<std::size_t> first_slips;  // Of whole cycles, where some are broken.

@@ -32,6 +32,7 @@ struct StraightLine {
   double middle_s = 0.0;
   double middle = 0.0;
   double slope_per_s = 0.0;
+  double variance = 0.0;  ///< Of the residuals.
 
   [[nodiscard]] double time_at(double level) const noexcept {
     return middle_s + (level - middle) / slope_per_s;
@@ -45,6 +46,7 @@ std::optional<StraightLine> line_through(const estimate::Trace& trace, std::size
   StraightLine line;
   double tt = 0.0;
   double tc = 0.0;
+  double cc = 0.0;
   for (std::size_t k = first; k < end; ++k) {
     const double c = trace.value[k];
     if (trace.usable[k] == 0 || c < low || c > high) continue;
@@ -55,21 +57,26 @@ std::optional<StraightLine> line_through(const estimate::Trace& trace, std::size
     line.middle += c_off / n;
     tt += t_off * (trace.time_s[k] - line.middle_s);
     tc += t_off * (c - line.middle);
+    cc += c_off * (c - line.middle);
   }
   if (n < 3.0 || !(tt > 0.0)) return std::nullopt;
   line.slope_per_s = tc / tt;
+  line.variance = std::max(cc - tc * line.slope_per_s, 0.0) / n;
   return line;
 }
 
-/// Median of the scans from first to last.
-double level_about(const estimate::Trace& trace, std::size_t first, std::size_t last) {
+/// Median of the usable scans from first to last; nothing if there are none.
+std::optional<double> level_about(const estimate::Trace& trace, std::size_t first, std::size_t last) {
   std::vector<double> levels;
-  for (std::size_t k = first; k <= last; ++k) levels.push_back(trace.value[k]);
-  return signal::median(levels);
+  for (std::size_t k = first; k <= last; ++k) {
+    if (trace.usable[k] != 0) levels.push_back(trace.value[k]);
+  }
+  return levels.empty() ? std::nullopt : std::optional{signal::median(levels)};
 }
 
-/// Noise of a scan in [first, end), by the second differences of neighbours, whatever the level does slowly.
-double roughness(const estimate::Trace& trace, std::size_t first, std::size_t end) {
+/// Whether the force rests in [first, end): by the second differences of neighbours, whatever it does slowly,
+/// and by a straight line through the second half, since a contact at rest creeps fast at first only.
+bool rests(const estimate::Trace& trace, std::size_t first, std::size_t end, double sigma) {
   constexpr double kOfNoise = 6.0;  // Variance of c₋ − 2c + c₊ over that of c.
   signal::RunningMean squares;
   for (std::size_t k = first + 1; k + 1 < end; ++k) {
@@ -77,7 +84,9 @@ double roughness(const estimate::Trace& trace, std::size_t first, std::size_t en
     const double bend = trace.value[k - 1] - 2.0 * trace.value[k] + trace.value[k + 1];
     squares.add(bend * bend / kOfNoise);
   }
-  return std::sqrt(squares.mean);
+  const auto half = line_through(trace, first + (end - first) / 2, end, -HUGE_VAL, HUGE_VAL);
+  const double most = kRestingSigmas * sigma;
+  return squares.count > 0.0 && half && std::max(squares.mean, half->variance) <= most * most;
 }
 
 /// Medians over the slips, or over a thousand of them.
@@ -126,11 +135,10 @@ std::optional<Hold> hold_between(const estimate::Trace& trace, std::size_t from,
   const std::size_t end = peak - rising;
   if (end < still + kFewestStill || estimate::is_broken(trace, static_cast<double>(from), next.peak_at))
     return std::nullopt;
-  const double at_stop = level_about(trace, still, still + (end - still) / 8);
-  const double at_go = level_about(trace, end - (end - still) / 8, end);
-  // A contact at rest creeps, fast at first: its roughness is that from scan to scan.
-  if (std::abs(at_go - at_stop) > kCreepOfHold * height ||
-      roughness(trace, still, end) > kRestingSigmas * sigma)
+  const auto at_stop = level_about(trace, still, still + (end - still) / 8);
+  const auto at_go = level_about(trace, end - (end - still) / 8, end);
+  if (!at_stop || !at_go || std::abs(*at_go - *at_stop) > kCreepOfHold * height ||
+      !rests(trace, still, end, sigma))
     return std::nullopt;
   const double slope_per_s = typical.height / typical.rise * scans_per_s(trace);
   const auto rise_between = [&](std::size_t first, std::size_t last, double low, double high) {
@@ -138,10 +146,10 @@ std::optional<Hold> hold_between(const estimate::Trace& trace, std::size_t from,
     return line_through(trace, first, last, low + margin, high - margin);
   };
   // A belt that stops during the slip leaves the force at its trough.
-  Hold hold{trace.time_s[from], trace.time_s[peak] - (next.peak - at_go) / slope_per_s};
-  if (const auto stop_s = meets_s(rise_between(from, still, trough, at_stop), at_stop, slope_per_s))
+  Hold hold{trace.time_s[from], trace.time_s[peak] - (next.peak - *at_go) / slope_per_s};
+  if (const auto stop_s = meets_s(rise_between(from, still, trough, *at_stop), *at_stop, slope_per_s))
     hold.stop_s = std::clamp(*stop_s, trace.time_s[from], trace.time_s[still]);
-  if (const auto go_s = meets_s(rise_between(end, peak, at_go, next.peak), at_go, slope_per_s))
+  if (const auto go_s = meets_s(rise_between(end, peak, *at_go, next.peak), *at_go, slope_per_s))
     hold.go_s = std::clamp(*go_s, trace.time_s[end], trace.time_s[peak]);
   return hold.stop_s < hold.go_s ? std::optional{hold} : std::nullopt;
 }

@@ -67,13 +67,17 @@ TestEstimates estimates_from_live(const estimate::Trace& trace, const base::Long
     whole.cycles.push_back(*before);
     whole.onset_errors_s.push_back(base::kNaN);
   };
-  bool is_next = false;    // Nothing is missing between it and the one before.
+  bool is_next = false;  // Nothing is missing between it and the one before.
+  const auto held = [&](std::size_t i) { return i > 0 && is_held_between(trace, slips[i - 1], slips[i]); };
+  bool all_are_held = true;
+  for (std::size_t i = 1; all_are_held && i < slips.size(); ++i) all_are_held = held(i);
   bool after_gap = false;  // How the one before ended, and when, was not seen.
   for (std::size_t i = 0; i < slips.size(); ++i) {
     const detect::Fall slip = slips[i];
     const bool is_last = i + 1 == slips.size();
     const bool is_slack = !is_last && settlement.slack.holds(trace, slip);
-    const bool is_held = i > 0 && is_held_between(trace, slips[i - 1], slip);
+    const bool is_held = held(i);
+    const bool counts = !is_slack && (!is_held || settlement.first_counts || all_are_held);
     const bool has_next = !is_last && !estimate::is_broken(trace, slip.peak_at, slips[i + 1].peak_at);
     detect::Cycle row = row_of(trace, slip);
     const double period_s =
@@ -84,7 +88,7 @@ TestEstimates estimates_from_live(const estimate::Trace& trace, const base::Long
       // Also of one that was not decided: what hardly speaks against sticking leaves the regime undecided.
       row.capture_evidence = cycle->evidence;
       has_gap = has_gap || (row.flags & detect::kCycleHasGap) != 0;
-      if (!is_slack && !is_held) means.add(*cycle);
+      if (counts) means.add(*cycle);
     }
     if (has_gap || after_gap) forget_end(row);
     after_gap = has_gap;
@@ -102,7 +106,7 @@ TestEstimates estimates_from_live(const estimate::Trace& trace, const base::Long
     if (before) keep(is_next ? row.peak_time_s - before->peak_time_s : base::kNaN);
     before = row;
     is_next = has_next;
-    if (!is_slack && !is_held) means.add_level(slip.peak, slip.trough);
+    if (counts) means.add_level(slip.peak, slip.trough);
     amplitude.add(0.5 * slip.drop());
   }
   keep(base::kNaN);

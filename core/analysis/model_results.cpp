@@ -77,6 +77,7 @@ std::vector<estimate::SlipWindow> slips_that_count(const SlipEstimates& estimate
   }
   if (all.size() < kEnoughToLeaveOutTheFirst || windows.empty()) windows = all;
   std::vector<double> sizes;
+  sizes.reserve(windows.size());
   for (const estimate::SlipWindow& window : windows) sizes.push_back(std::abs(window.slip.S - window.slip.K));
   const double typical = signal::median(sizes);
   std::vector<estimate::SlipWindow> told;
@@ -502,6 +503,18 @@ void model_results(std::span<const detect::Fall> slips, const SlipEstimates& est
   });
 }
 
+/// When the rest before slip i began, which follows a hold. How the slip before ended is not known: its
+/// trough is near its capture, unless the sled slid on until the belt stopped, for longer than two cycles.
+double rests_from_s(const estimate::Trace& trace, std::span<const detect::Fall> slips, std::size_t i,
+                    const model::SharedParameters& shared) {
+  const double trough_s = estimate::time_at(trace, trough_at(trace, slips[i - 1], shared));
+  const double stop_s = *trace.belt.held_from_s(pull_of(trace, slips[i]));
+  const double cycle_s =
+      i > 1 ? estimate::time_at(trace, slips[i - 1].peak_at) - estimate::time_at(trace, slips[i - 2].peak_at)
+            : 0.0;
+  return stop_s - trough_s <= 2.0 * cycle_s ? trough_s : std::max(stop_s, trough_s);
+}
+
 std::vector<detect::Cycle> cycle_table(const estimate::Trace& trace, std::span<const detect::Fall> slips,
                                        const SlipEstimates& estimates) {
   const estimate::SlipFit& fit = estimates.fit;
@@ -510,8 +523,7 @@ std::vector<detect::Cycle> cycle_table(const estimate::Trace& trace, std::span<c
   for (std::size_t i = 0; i < slips.size(); ++i) {
     const detect::Fall& slip = slips[i];
     const bool held = i > 0 && is_held_between(trace, slips[i - 1], slip);
-    // How the slip before the hold ended is not known; its trough is near its capture.
-    if (held) last_capture_s = estimate::time_at(trace, trough_at(trace, slips[i - 1], fit.shared));
+    if (held) last_capture_s = rests_from_s(trace, slips, i, fit.shared);
     detect::Cycle cycle;
     cycle.number = static_cast<std::int64_t>(i);
     cycle.peak_time_s = estimate::time_at(trace, slip.peak_at);

@@ -42,7 +42,7 @@ void add_groups(const SlipMeans& usual, std::span<const RestedSlip> held, std::v
   group.delta_mu = usual.delta_mu.mean;
   group.delta_mu_error = std::sqrt(usual.delta_mu.variance() / usual.delta_mu.count);
   // The errors of single slips hold the shared one and their own noise.
-  group.shared_part = std::sqrt(usual.own_variance.mean) / usual.delta_mu.mean;
+  if (usual.delta_mu.mean > 0.0) group.shared_part = std::sqrt(usual.own_variance.mean) / usual.delta_mu.mean;
   group.K = usual.level.mean;
   group.K_error = std::sqrt(usual.level.variance() / usual.level.count);
   groups.push_back(group);
@@ -74,7 +74,8 @@ std::vector<RestGroup> group_by_rest(std::span<const RestedSlip> slips, const Te
     while (end != sorted.end() &&
            end->pull_speed_m_per_s <= (end - 1)->pull_speed_m_per_s * (1.0 + kSameSpeed))
       ++end;
-    const bool is_one_speed = (end - 1)->pull_speed_m_per_s <= first->pull_speed_m_per_s * (1.0 + kSameSpeed);
+    const bool is_one_speed =
+        (end - 1)->pull_speed_m_per_s <= first->pull_speed_m_per_s * (1.0 + 2.0 * kSameSpeed);
     const auto held = std::stable_partition(first, end, [](const RestedSlip& slip) { return !slip.held; });
     const SlipMeans usual = means_of({first, held}, oscillator);
     for (auto slip = first; slip != held; ++slip)

@@ -58,10 +58,10 @@ template <typename Cycles>
 
 /// Each slip after a hold is a group of its own: it has its place on the paper and its time at rest. The
 /// others are grouped by their speed: speeds that follow each other within kSameSpeed are one, unless they
-/// spread further, as on a ramp; fewer than four slips make no group. Slips after a hold at a speed without a
-/// group are left out. K of a speed is the test's K and by how much the middles of the falls at this speed
-/// lie off the mean of all. \param results  of the test. \return empty where they have no K. Without a
-/// damping the typical one stands for it.
+/// spread over more than twice that, as on a ramp; fewer than four slips make no group. Slips after a hold at
+/// a speed without a group are left out. K of a speed is the test's K and by how much the middles of the
+/// falls at this speed lie off the mean of all. \param results  of the test. \return empty where they have no
+/// K. Without a damping the typical one is taken.
 [[nodiscard]] std::vector<RestGroup> group_by_rest(std::span<const RestedSlip> slips,
                                                    const TestResults& results);
 

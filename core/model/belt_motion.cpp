@@ -17,14 +17,31 @@ double first_time_s(double rate, double slope, double gain) noexcept {
   return denominator > 0.0 ? 2.0 * gain / denominator : kForEver;
 }
 
+/// Whether the belt stands still or has its largest speed, and takes little time from one to the other.
+bool is_one_speed(const PullSpeed& plan) noexcept {
+  constexpr double kLittle = 0.1;  // Of the time at that speed.
+  double changing_s = 0.0;
+  double pulling_s = 0.0;
+  const std::vector<SpeedPoint>& points = plan.points();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double v = points[i].speed_m_per_s;
+    if (v != 0.0 && v != plan.largest_m_per_s()) return false;
+    if (i + 1 == points.size()) continue;
+    const double duration_s = points[i + 1].at_s - points[i].at_s;
+    if (points[i + 1].speed_m_per_s != v) {
+      changing_s += duration_s;
+    } else if (v != 0.0) {
+      pulling_s += duration_s;
+    }
+  }
+  return changing_s <= kLittle * pulling_s;
+}
+
 }  // namespace
 
 BeltMotion::BeltMotion(PullSpeed plan, double start_s)
     : plan_(std::move(plan)), scale_(1.0 / plan_->largest_m_per_s()), start_s_(start_s) {
-  has_one_speed_ =
-      std::all_of(plan_->points().begin(), plan_->points().end(), [this](const SpeedPoint& point) {
-        return point.speed_m_per_s == 0.0 || point.speed_m_per_s == plan_->largest_m_per_s();
-      });
+  has_one_speed_ = is_one_speed(*plan_);
 }
 
 double BeltMotion::climbing_time_s(double r, double from_s, double gain) const noexcept {

@@ -27,7 +27,7 @@ class BeltMotion {
   BeltMotion(PullSpeed plan, double start_s);
 
   [[nodiscard]] bool is_constant() const noexcept { return !plan_; }
-  /// One speed throughout, but for the times at which the belt stands still.
+  /// One speed throughout, but for the times at which the belt stands still, starts and stops.
   [[nodiscard]] bool has_one_speed() const noexcept { return has_one_speed_; }
   /// The speed, planned or measured. Requires !is_constant().
   [[nodiscard]] const PullSpeed& plan() const noexcept { return *plan_; }

@@ -12,7 +12,11 @@ const Records = (() => {
 
   /// Begin and end of a day by the clock of this browser, as the table shows it.
   const kEdges = {from: "00:00:00", to: "23:59:59"};
-  const moment = (day, time) => new Date(`${day}T${time}`).toISOString().replace(".000", "");
+  /// What is no day is left to the daemon, which says so.
+  function moment(day, time) {
+    const at = new Date(`${day}T${time}`);
+    return Number.isNaN(at.getTime()) ? day : at.toISOString().replace(".000", "");
+  }
 
   /// What the fields ask for; empty fields ask for nothing.
   function query() {

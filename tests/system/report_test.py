@@ -71,7 +71,7 @@ class Methods(Folder):
     def test_the_shipped_ones_are_listed(self):
         lines = self.good("methods").splitlines()
         self.assertEqual([line.split()[0] for line in lines], ["astm-d1894", "iso-15359", "iso-8295", "penner-1995",
-                                                               "speed-ramp", "tappi-t549"])
+                                                               "slide-hold-slide", "speed-ramp", "tappi-t549"])
         listed = json.loads(self.good("methods", "--json"))["methods"]
         by_name = {method["name"]: method for method in listed}
         self.assertEqual(by_name["iso-8295"]["kinetic_travel"], [0, 0.06])
