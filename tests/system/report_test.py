@@ -76,7 +76,7 @@ class Methods(Folder):
         by_name = {method["name"]: method for method in listed}
         self.assertEqual(by_name["iso-8295"]["kinetic_travel"], [0, 0.06])
         self.assertEqual(by_name["penner-1995"]["kinetic_cycles"], 10)
-        self.assertEqual([m["name"] for m in listed if not m["check"]], ["penner-1995", "speed-ramp"])
+        self.assertEqual([m["name"] for m in listed if not m["check"]], ["penner-1995", "slide-hold-slide", "speed-ramp"])
 
     def test_a_method_decides_the_traditional_numbers_and_stands_in_the_record(self):
         method = self.folder / "own.toml"

@@ -112,6 +112,26 @@ TEST(Holds, AreNoSlidingOverRoughPaper) {
   EXPECT_TRUE(find_holds(course.trace, course.slips, kSigma).empty());
 }
 
+TEST(Holds, AreNoSmoothSlidingThatWanders) {
+  Course course{.still_s = 2.0};
+  course.draw();
+  for (std::size_t k = 0; k < course.trace.size(); ++k) {
+    const double since_s = course.trace.time_s[k] - course.stop_s;
+    if (since_s > 0.0 && since_s < 2.0) course.trace.value[k] += 5.0 * kSigma * std::sin(9.0 * since_s);
+  }
+  EXPECT_TRUE(find_holds(course.trace, course.slips, kSigma).empty());
+}
+
+TEST(Holds, NeedScansThatAreMeasurements) {
+  Course course{.still_s = 2.0};
+  course.draw();
+  for (std::size_t k = 0; k < course.trace.size(); ++k) {
+    const double since_s = course.trace.time_s[k] - course.stop_s;
+    if (since_s > 0.0 && since_s < 2.0) course.trace.usable[k] = 0;
+  }
+  EXPECT_TRUE(find_holds(course.trace, course.slips, kSigma).empty());
+}
+
 TEST(Holds, AreNotSeenThroughABreak) {
   Course course{.still_s = 2.0};
   course.draw();
@@ -151,6 +171,10 @@ TEST(Holds, AreKnownToTheBeltUnlessItGoesBack) {
   const auto back = model::PullSpeed::make(
       {{0.0, 0.002}, {1.0, 0.002}, {1.0, -0.002}, {1.5, -0.002}, {1.5, 0.0}, {4.0, 0.0}, {4.0, 0.002}});
   EXPECT_FALSE((model::BeltMotion{*back, 0.0}.held_from_s(1)));
+  EXPECT_TRUE(belt.has_one_speed());
+  EXPECT_FALSE((model::BeltMotion{*back, 0.0}.has_one_speed()));
+  const auto ramp = model::PullSpeed::make({{0.0, 0.0}, {8.0, 0.01}});
+  EXPECT_FALSE((model::BeltMotion{*ramp, 0.0}.has_one_speed()));
 }
 
 /// Six slips at each of two speeds, K of which differ by 0.01, and one after a hold.
