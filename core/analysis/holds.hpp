@@ -1,7 +1,6 @@
 /// \file
 /// Holds of a slide-hold-slide test: the belt stands still while the sled rests, and pulls on. The contact
-/// ages meanwhile [Dieterich 1972]. Nobody need tell their times: a force that stands still between two
-/// slips shows them.
+/// ages meanwhile [Dieterich 1972]. The trace tells their times: the force stands still between two slips.
 #pragma once
 
 #include <optional>

@@ -503,6 +503,8 @@ void model_results(std::span<const detect::Fall> slips, const SlipEstimates& est
   });
 }
 
+namespace {
+
 /// When the rest before slip i began, which follows a hold. How the slip before ended is not known: its
 /// trough is near its capture, unless the sled slid on until the belt stopped, for longer than two cycles.
 double rests_from_s(const estimate::Trace& trace, std::span<const detect::Fall> slips, std::size_t i,
@@ -514,6 +516,8 @@ double rests_from_s(const estimate::Trace& trace, std::span<const detect::Fall> 
             : 0.0;
   return stop_s - trough_s <= 2.0 * cycle_s ? trough_s : std::max(stop_s, trough_s);
 }
+
+}  // namespace
 
 std::vector<detect::Cycle> cycle_table(const estimate::Trace& trace, std::span<const detect::Fall> slips,
                                        const SlipEstimates& estimates) {

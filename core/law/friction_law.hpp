@@ -16,9 +16,8 @@
 /// - each that it has not is, by its 95 % interval and with what the systematic parts could hide, at most a
 ///   tenth of S − K over a decade of speed.
 ///
-/// The slips of one sheet count as a test for each hold and speed. What sheets differ by is seen as scatter
-/// between them, so that levels found from few sheets are surer than sheets allow; slopes are those within
-/// the sheets.
+/// A sheet with holds or several speeds counts as one test for each of them. Sheets that differ scatter as
+/// such tests do, so that the error of a level found from few sheets is too small.
 ///
 /// Tests whose speeds differ by at most 1 % have one speed: K is at their mean speed, S at their mean stick
 /// time. A slip after a hold counts with its own stick time, which the belt set.

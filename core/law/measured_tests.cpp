@@ -60,8 +60,8 @@ std::vector<LawTest> tests_of_rests(const MeasuredTest& test) {
     own.stick_time_s = group.stick_time_s;
     own.held = group.held;
     own.S = Value{group.K + group.delta_mu, std::max(group.delta_mu_error, kLeastError), 0.0};
-    // The peaks tell S, so that K is off as far the other way as the mean S - K is: what is left moves an S
-    // by as much as its S - K differs from that mean, up or down.
+    // S comes from the peaks: where the fit makes the mean S - K too large, it makes K as much too small. An
+    // S whose S - K differs from the mean is off by that part of the difference, up or down.
     own.S->systematic = (S ? S->systematic : 0.0) + group.shared_part * (group.delta_mu - delta_mu);
     if (!group.held) own.K = Value{group.K, std::max(group.K_error, kLeastError), K->systematic};
     tests.push_back(own);
