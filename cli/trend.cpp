@@ -18,6 +18,7 @@
 #include "core/base/clock.hpp"
 #include "core/base/shell_word.hpp"
 #include "core/base/text.hpp"
+#include "core/base/wording.hpp"
 #include "core/record/iso_time.hpp"
 #include "core/record/read_apart.hpp"
 #include "daemon/types/batch_journal.hpp"

@@ -9,6 +9,8 @@
 #include "io/results_json.hpp"
 #include <nlohmann/json.hpp>
 
+#include "core/record/record.hpp"
+
 namespace stickslip::io {
 namespace {
 
