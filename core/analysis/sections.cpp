@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include <Eigen/LU>
@@ -150,28 +153,77 @@ void append(const std::vector<detect::Cycle>& rows, std::size_t count, std::size
   }
 }
 
+/// Fits the sections of a test one by one. On threads the next section, where it is likely to begin, is
+/// fitted while this one is.
+class SectionFitter {
+ public:
+  SectionFitter(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips, double sigma,
+                const estimate::SharedPrior& prior, const SectionSettings& settings)
+      : trace_(trace), slips_(slips), sigma_(sigma), prior_(prior), settings_(settings) {
+    // Where the speed changes, how each slip ended tells about all the others: escape_speeds().
+    if (!trace.belt.is_constant()) settings_.most = slips.size();
+  }
+
+  struct Section {
+    std::vector<detect::Fall> slips;
+    SlipEstimates estimates;
+  };
+
+  /// The section that begins with slip `first`.
+  Section next(std::size_t first) {
+    Task own = next_.first == first && next_.section.valid() ? std::move(next_) : begin(first);
+    const std::size_t end = first + own.size;
+    next_ = {};
+    if (settings_.on_threads && end < slips_.size()) next_ = begin(end - 1);
+    return own.section.get();
+  }
+
+ private:
+  struct Task {
+    std::size_t first = 0;
+    std::size_t size = 0;
+    std::future<Section> section;
+  };
+
+  [[nodiscard]] Task begin(std::size_t first) const {
+    const std::size_t size = next_size(slips_.size() - first, settings_.most);
+    std::vector<detect::Fall> own;
+    own.reserve(size);
+    for (std::size_t i = 0; i < size; ++i) own.push_back(slips_[first + i]);
+    // A task has a name, as async moves what it is given before it knows whether there is room for a thread.
+    const auto task = [trace = std::make_shared<const estimate::Trace>(trace_.view()), own, sigma = sigma_,
+                       prior = prior_, first_counts = settings_.first_counts && first == 0] {
+      return Section{own, estimate_slips(*trace, own, sigma, prior, first_counts)};
+    };
+    const auto policy =
+        settings_.on_threads ? std::launch::async | std::launch::deferred : std::launch::deferred;
+    return {first, size, std::async(policy, task)};
+  }
+
+  const estimate::Trace& trace_;
+  const base::LongColumn<detect::Fall>& slips_;
+  double sigma_;
+  const estimate::SharedPrior& prior_;
+  SectionSettings settings_;
+  Task next_;
+};
+
 }  // namespace
 
 TestEstimates estimate_in_sections(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
                                    double sigma, const estimate::SharedPrior& prior,
-                                   const model::Tester& tester, const std::filesystem::path& scratch,
-                                   std::size_t most, bool first_counts) {
+                                   const model::Tester& tester, const SectionSettings& settings) {
   TestEstimates whole;
-  whole.log_likelihood_ratios = base::LongColumn<double>{scratch};
-  whole.cycles = base::LongColumn<detect::Cycle>{scratch};
-  whole.onset_errors_s = base::LongColumn<double>{scratch};
+  whole.log_likelihood_ratios = base::LongColumn<double>{settings.scratch};
+  whole.cycles = base::LongColumn<detect::Cycle>{settings.scratch};
+  whole.onset_errors_s = base::LongColumn<double>{settings.scratch};
   PooledResults results;
   PooledTester testers;
+  SectionFitter sections{trace, slips, sigma, prior, settings};
   double last_capture_s = std::nan("");
-  // Where the speed changes, how each slip ended tells about all the others: escape_speeds().
-  if (!trace.belt.is_constant()) most = slips.size();
   for (std::size_t first = 0; whole.cycles.size() < slips.size();) {
-    const std::size_t size = next_size(slips.size() - first, most);
-    std::vector<detect::Fall> section;
-    section.reserve(size);
-    for (std::size_t i = 0; i < size; ++i) section.push_back(slips[first + i]);
-    // The first slip of a later section also was the last of the section before.
-    const SlipEstimates estimates = estimate_slips(trace, section, sigma, prior, first_counts && first == 0);
+    const auto [section, estimates] = sections.next(first);
+    const std::size_t size = section.size();
     whole.model_describes = whole.model_describes && model_describes(estimates, sigma);
     Misfit misfit;
     misfit.add(trace, estimates, sigma);

@@ -43,16 +43,19 @@ struct TestEstimates {
   std::optional<TesterEstimate> tester;
 };
 
+/// How estimate_in_sections() goes about it.
+struct SectionSettings {
+  std::filesystem::path scratch{};        ///< Folder for the columns of a long test; empty: memory.
+  std::size_t most = kMostSlipsTogether;  ///< Slips of a section, > 2.
+  bool first_counts = false;              ///< Means include the first slip of the test.
+  bool on_threads = false;  ///< Fits the next section beside this one; the estimates are the same.
+};
+
 /// \param slips  falls that are slips, in the order of time, not empty. \param sigma  noise of one scan, > 0.
-/// \param scratch  folder for the columns of a long test; empty: memory.
-/// \param most  slips of a section, > 2.
-/// \param first_counts  means include the first slip of the test.
 [[nodiscard]] TestEstimates estimate_in_sections(const estimate::Trace& trace,
                                                  const base::LongColumn<detect::Fall>& slips, double sigma,
                                                  const estimate::SharedPrior& prior,
                                                  const model::Tester& tester,
-                                                 const std::filesystem::path& scratch = {},
-                                                 std::size_t most = kMostSlipsTogether,
-                                                 bool first_counts = false);
+                                                 const SectionSettings& settings = {});
 
 }  // namespace stickslip::analysis

@@ -462,14 +462,19 @@ base::LongColumn<detect::LiveCycle> TestAnalysis::detected(const detect::LiveSet
   return cycles;
 }
 
+SectionSettings TestAnalysis::section_settings() const {
+  return {.scratch = settings_.scratch_folder,
+          .first_counts = settings_.skipped.first_slip,
+          .on_threads = !settings_.live};
+}
+
 TestEstimates TestAnalysis::estimate(estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
                                      double sigma) {
   // Where the speed changes, the mean of a cycle does so too, without any drift of the paper.
   if (!settings_.skipped.drift && trace.belt.is_constant()) trace.drift = significant_drift(trace, slips);
   trace.belt.take_off_drift(trace.drift.rate_per_s);
   const auto estimates = [&](const estimate::SharedPrior& prior) {
-    return estimate_in_sections(trace, slips, sigma, prior, settings_.tester, settings_.scratch_folder,
-                                kMostSlipsTogether, settings_.skipped.first_slip);
+    return estimate_in_sections(trace, slips, sigma, prior, settings_.tester, section_settings());
   };
   TestEstimates alone = estimates({});
   if (alone.model_describes) tester_ = alone.tester;
@@ -529,8 +534,7 @@ Estimate TestAnalysis::mu_slope(const estimate::Trace& trace, const base::LongCo
     base::LongColumn<detect::Fall> own{settings_.scratch_folder};
     for (std::size_t i = part * size; i < (part + 1) * size; ++i) own.push_back(slips[i]);
     const TestEstimates found =
-        estimate_in_sections(trace, own, sigma, {}, settings_.tester, settings_.scratch_folder,
-                             kMostSlipsTogether, settings_.skipped.first_slip);
+        estimate_in_sections(trace, own, sigma, {}, settings_.tester, section_settings());
     if (!found.model_describes || !found.tester) {
       return Estimate::none(fmt::format("part {} of {} of the test has none: {}", part + 1, kParts,
                                         found.results.delta_mu.reason));

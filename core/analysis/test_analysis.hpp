@@ -147,6 +147,7 @@ class TestAnalysis {
   /// Fills pull_speed_measured and the findings.
   void speed_results(const estimate::Trace& trace, const TestEstimates& estimates,
                      TestResults& results) const;
+  [[nodiscard]] SectionSettings section_settings() const;
   /// From the highest rung of the fit that describes the test, after taking off the drift; if the test is not
   /// described, what its fit left. With a characterised tester γ is the tester's, unless the test alone
   /// contradicts it. Fills tester_ and tester_check_.

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "core/detect/slip_rule.hpp"
@@ -35,7 +37,7 @@ TEST_P(Sections, SayWhatTheWholeSays) {
   const std::vector<detect::Fall> slips = slips_of(trace);
   ASSERT_GE(slips.size(), 95U);
   const TestEstimates whole = estimate_in_sections(trace, slips, kSectionSigma, {}, {});
-  const TestEstimates parts = estimate_in_sections(trace, slips, kSectionSigma, {}, {}, {}, kMost);
+  const TestEstimates parts = estimate_in_sections(trace, slips, kSectionSigma, {}, {}, {.most = kMost});
   ASSERT_TRUE(whole.model_describes);
   ASSERT_TRUE(parts.model_describes);
   EXPECT_EQ(parts.captured, whole.captured);
@@ -82,9 +84,33 @@ TEST(Sections, OneSectionIsTheFitOfAll) {
   const ModelCourse course = ModelCourse::captured(1.3, 20);
   const estimate::Trace trace = course.noisy(kSectionSigma, 1);
   const std::vector<detect::Fall> slips = slips_of(trace);
-  const TestEstimates exactly = estimate_in_sections(trace, slips, kSectionSigma, {}, {}, {}, slips.size());
+  const TestEstimates exactly =
+      estimate_in_sections(trace, slips, kSectionSigma, {}, {}, {.most = slips.size()});
   const TestEstimates easily = estimate_in_sections(trace, slips, kSectionSigma, {}, {});
   EXPECT_EQ(exactly.results, easily.results);
+}
+
+// Three sections, of which the second begins earlier than a thread ahead expects: a break hides how the last
+// slip but one of the first ended.
+TEST(Sections, OnThreadsSayTheSame) {
+  estimate::Trace trace = ModelCourse::captured(1.3, 60).noisy(kSectionSigma, 1);
+  const std::vector<detect::Fall> slips = slips_of(trace);
+  ASSERT_GT(slips.size(), 2 * kMost);
+  trace.breaks = {static_cast<std::size_t>(slips[kMost - 2].trough_at) + 2};
+  const TestEstimates one = estimate_in_sections(trace, slips, kSectionSigma, {}, {}, {.most = kMost});
+  const TestEstimates two =
+      estimate_in_sections(trace, slips, kSectionSigma, {}, {}, {.most = kMost, .on_threads = true});
+  ASSERT_TRUE(one.results.delta_mu.value);
+  EXPECT_EQ(two.results, one.results);
+  ASSERT_EQ(two.cycles.size(), one.cycles.size());
+  for (std::size_t i = 0; i < one.cycles.size(); ++i) {
+    EXPECT_EQ(two.cycles[i].number, one.cycles[i].number) << i;
+    // NaN, where a slip was not fitted, has bits too.
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(two.cycles[i].onset_time_s),
+              std::bit_cast<std::uint64_t>(one.cycles[i].onset_time_s))
+        << i;
+    EXPECT_EQ(two.cycles[i].flags, one.cycles[i].flags) << i;
+  }
 }
 
 }  // namespace
