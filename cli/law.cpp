@@ -78,6 +78,13 @@ std::vector<Named> parameters_of(const FrictionLaw& found) {
         own.systematic > 0.0 ? std::optional{own.systematic} : std::nullopt;
     named.push_back({name, symbol, unit, meaning, {own.value, own.error, systematic, {}}});
   };
+  if (found.is_rate_and_state()) {
+    const law::RateAndState& own = *found.rate_and_state;
+    add("a", "a", "1", "for each factor of e in speed", own.a);
+    add("b", "b", "1", "for each factor of e in time at rest", own.b);
+    named.push_back({"critical_slip", "D_c", "m", "", analysis::Estimate::of(own.critical_slip_m)});
+    return named;
+  }
   const bool ages = has_ageing(found.law);
   if (const auto& S = found.ageing.fitted(ages)) {
     add(ages ? "mu_s_at_1_s" : "mu_s", ages ? "S₁" : "S", "1", ages ? "after 1 s at rest" : "", S->level);
@@ -92,11 +99,13 @@ std::vector<Named> parameters_of(const FrictionLaw& found) {
 }
 
 /// Measured less the law; nullopt if the test has no such value.
-std::optional<double> residual(const Dependence& own, bool with_slope, std::size_t test) {
+std::optional<double> residual(const FrictionLaw& found, const Dependence& own, bool with_slope,
+                               std::size_t test) {
   const auto at = std::find(own.tests.begin(), own.tests.end(), test);
   const std::optional<law::Line>& line = own.fitted(with_slope);
   if (at == own.tests.end() || !line) return std::nullopt;
   const law::Point& point = own.points[static_cast<std::size_t>(at - own.tests.begin())];
+  if (&own == &found.ageing && found.is_rate_and_state()) return point.y - *found.rate_and_state->S[test];
   return point.y - line->predicted(point.x).value;
 }
 
@@ -124,11 +133,12 @@ std::string tests_table(const Shown& shown) {
   for (std::size_t i = 0; i < shown.tests.tests.size(); ++i) {
     const LawTest& test = shown.tests.tests[i];
     const std::size_t number = shown.tests.measured[i];
-    table.add(
-        {io::cell(number + 1), base::speed_text(test.pull_speed_m_per_s),
-         test.S ? fmt::format("{:.1f}", *test.stick_time_s * kMillisecondsPerSecond) : "",
-         coefficient_text(test.S), residual_text(residual(shown.law.ageing, has_ageing(shown.law.law), i)),
-         coefficient_text(test.K), residual_text(residual(shown.law.rate, has_rate(shown.law.law), i))});
+    table.add({io::cell(number + 1), base::speed_text(test.pull_speed_m_per_s),
+               test.S ? fmt::format("{:.1f}", *test.stick_time_s * kMillisecondsPerSecond) : "",
+               coefficient_text(test.S),
+               residual_text(residual(shown.law, shown.law.ageing, has_ageing(shown.law.law), i)),
+               coefficient_text(test.K),
+               residual_text(residual(shown.law, shown.law.rate, has_rate(shown.law.law), i))});
     if (i > 0 && number == shown.tests.measured[i - 1]) continue;
     files +=
         fmt::format("file of test {}: {}\n", number + 1, base::printable(shown.material.tests[number].file));
@@ -176,21 +186,30 @@ std::string reason_text(std::string_view reason) {
   return text;
 }
 
+std::string critical_slip_text(double critical_slip_m) {
+  constexpr double kMicrometresPerMetre = 1e6;
+  return fmt::format("{:.1g} µm, within a factor of {:g}", kMicrometresPerMetre * critical_slip_m,
+                     law::kCriticalSlipFactor);
+}
+
 std::string text_of(const Shown& shown) {
   const FrictionLaw& found = shown.law;
-  std::string text = found.told ? fmt::format("law: {}: {}\n", name(found.law), in_words(found.law))
+  std::string text = found.told ? fmt::format("law: {}: {}\n", name(found), in_words(found))
                                 : fmt::format("law: cannot be told from these tests; {} leads:\n     {}\n",
-                                              name(found.law), in_words(found.law));
+                                              name(found), in_words(found));
   for (const Dependence* own : {&found.ageing, &found.rate}) {
     if (!own->reason.empty()) text += reason_text(own->reason);
   }
   if (shown.next) text += next_text(*shown.next);
   io::Table list = io::Table::list({6, 0, 0});
-  for (const Named& own : parameters_of(found))
-    list.add({std::string{"  "} + own.symbol, io::uncertain(own.value, kLawDecimals).text(),
+  for (const Named& own : parameters_of(found)) {
+    list.add({std::string{"  "} + own.symbol,
+              own.value.standard_error ? io::uncertain(own.value, kLawDecimals).text()
+                                       : critical_slip_text(*own.value.value),
               std::string{own.meaning}});
+  }
   text += fmt::format("\n{}{}\n", list.text(), io::kErrorsLegend);
-  if (found.scores)
+  if (found.scores && !found.is_rate_and_state())
     text += fmt::format("\nScores: log density of a test by the law of the others\n{}",
                         scores_table(*found.scores));
   text += fmt::format("\nTests; off: measured less the law\n{}", tests_table(shown));
@@ -220,8 +239,8 @@ Json coefficient_json(const std::optional<law::Value>& value, const std::optiona
 
 Json json_of(const Shown& shown) {
   const FrictionLaw& found = shown.law;
-  Json json{{"law", found.told ? Json(name(found.law)) : Json(nullptr)},
-            {"leading_law", name(found.law)},
+  Json json{{"law", found.told ? Json(name(found)) : Json(nullptr)},
+            {"leading_law", name(found)},
             {"reasons", Json::array()},
             {"next_pull", nullptr},
             {"parameters", Json::object()},
@@ -240,6 +259,8 @@ Json json_of(const Shown& shown) {
   }
   for (const Named& own : parameters_of(found))
     json["parameters"][own.name] = estimate_json(own.value, own.unit);
+  if (found.is_rate_and_state())
+    json["parameters"]["critical_slip"]["within_factor"] = law::kCriticalSlipFactor;
   for (std::size_t i = 0; found.scores && i < law::kLaws.size(); ++i) {
     const law::LawScore& own = (*found.scores)[i];
     json["scores"].push_back({{"law", name(law::kLaws[i])},
@@ -259,8 +280,8 @@ Json json_of(const Shown& shown) {
          {"pull_speed", test.pull_speed_m_per_s},
          {"stick_time", io::or_null(test.stick_time_s)},
          {"held", test.held},
-         {"mu_s", coefficient_json(test.S, residual(found.ageing, has_ageing(found.law), i))},
-         {"mu_k", coefficient_json(test.K, residual(found.rate, has_rate(found.law), i))}});
+         {"mu_s", coefficient_json(test.S, residual(found, found.ageing, has_ageing(found.law), i))},
+         {"mu_k", coefficient_json(test.K, residual(found, found.rate, has_rate(found.law), i))}});
   }
   for (const law::LeftOut& out : shown.tests.left_out) {
     json["left_out"].push_back(

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <functional>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "report/millimetres.hpp"
@@ -14,9 +17,23 @@
 namespace stickslip::cli {
 namespace {
 
-/// Points with their errors, and both lines: what was chosen drawn through, the other dashed.
-plot::Panel panel_of(const law::Dependence& own, bool with_slope, const char* symbol, plot::Axis x,
-                     bool x_is_log) {
+/// From the lowest place to the highest; `shown` is the place on the axis.
+plot::Curve curve_of(const std::function<double(double)>& law, double low, double high,
+                     const std::function<double(double)>& shown) {
+  plot::Curve curve;
+  constexpr int kSteps = 50;  // A line over a logarithmic axis is no straight one.
+  for (int i = 0; i <= kSteps; ++i) {
+    const double place = low + (high - low) * i / kSteps;
+    curve.x.push_back(shown(place));
+    curve.y.push_back(law(place));
+  }
+  return curve;
+}
+
+/// Points with their errors, and the lines: those of the law drawn through, the others dashed.
+/// \param both  S depends on the speed, too: pulls and holds have lines of their own. nullptr: it does not.
+plot::Panel panel_of(const law::Dependence& own, bool with_slope, const law::RateAndState* both,
+                     const char* symbol, plot::Axis x, bool x_is_log) {
   plot::Panel panel{.y = {symbol}, .own_x = std::move(x)};
   plot::Curve points{.label = "tests", .style = plot::CurveStyle::kPoints, .colour = plot::Colour::kBlack};
   plot::Curve errors{.style = plot::CurveStyle::kLine, .colour = plot::Colour::kBlack};
@@ -25,7 +42,9 @@ plot::Panel panel_of(const law::Dependence& own, bool with_slope, const char* sy
   const auto shown = [x_is_log](double place) {
     return x_is_log ? std::pow(10.0, place) : report::kMillimetresPerMetre * place;
   };
-  for (const law::Point& point : own.points) {
+  for (std::size_t i = 0; i < own.points.size(); ++i) {
+    law::Point point = own.points[i];
+    if (both != nullptr) point.y -= both->K_is_lower[own.tests[i]];
     low = std::min(low, point.x);
     high = std::max(high, point.x);
     points.x.push_back(shown(point.x));
@@ -35,20 +54,27 @@ plot::Panel panel_of(const law::Dependence& own, bool with_slope, const char* sy
       errors.y.push_back(y);
     }
   }
-  for (const bool slope : {false, true}) {
-    const std::optional<law::Line>& line = own.fitted(slope);
-    if (!line) continue;
-    plot::Curve curve{
-        .label = slope ? fmt::format("{} depends on it", symbol) : fmt::format("{} constant", symbol),
-        .style = slope == with_slope ? plot::CurveStyle::kLine : plot::CurveStyle::kDashed,
-        .colour = slope ? plot::Colour::kVermilion : plot::Colour::kBlue};
-    constexpr int kSteps = 50;  // A line over a logarithmic axis is no straight one.
-    for (int i = 0; i <= kSteps; ++i) {
-      const double place = low + (high - low) * i / kSteps;
-      curve.x.push_back(shown(place));
-      curve.y.push_back(line->predicted(place).value);
-    }
+  const auto draw = [&](const std::function<double(double)>& law, std::string label, bool chosen,
+                        plot::Colour colour) {
+    plot::Curve curve = curve_of(law, low, high, shown);
+    curve.label = std::move(label);
+    curve.style = chosen ? plot::CurveStyle::kLine : plot::CurveStyle::kDashed;
+    curve.colour = colour;
     panel.curves.push_back(std::move(curve));
+  };
+  if (both != nullptr) {
+    draw(
+        [&](double log_rest) { return both->static_coefficient(log_rest, both->log_pull_length - log_rest); },
+        "pulls: the longer at rest, the slower", true, plot::Colour::kBlue);
+    draw([&](double log_rest) { return both->static_coefficient(log_rest, both->log_hold_speed); },
+         "holds, at one speed", true, plot::Colour::kVermilion);
+  } else {
+    if (own.constant)
+      draw([&](double place) { return own.constant->predicted(place).value; },
+           fmt::format("{} constant", symbol), !with_slope, plot::Colour::kBlue);
+    if (own.line)
+      draw([&](double place) { return own.line->predicted(place).value; },
+           fmt::format("{} depends on it", symbol), with_slope, plot::Colour::kVermilion);
   }
   panel.curves.push_back(std::move(errors));
   panel.curves.push_back(std::move(points));
@@ -57,8 +83,9 @@ plot::Panel panel_of(const law::Dependence& own, bool with_slope, const char* sy
 
 }  // namespace
 
-const char* in_words(law::Law law) {
-  switch (law) {
+const char* in_words(const law::FrictionLaw& found) {
+  if (found.is_rate_and_state()) return "S depends on the time at rest and on the speed";
+  switch (found.law) {
     case law::Law::kConstant:
       return "S and K are constant";
     case law::Law::kAgeing:
@@ -73,17 +100,21 @@ const char* in_words(law::Law law) {
 
 plot::Figure law_figure(const law::FrictionLaw& found) {
   plot::Figure figure;
-  figure.title = found.told ? fmt::format("Friction law: {}", in_words(found.law))
-                            : fmt::format("Friction law: cannot be told; {} leads", name(found.law));
+  figure.title = found.told ? fmt::format("Friction law: {}", in_words(found))
+                            : fmt::format("Friction law: cannot be told; {} leads", name(found));
   figure.height_px = 700;
   if (!found.ageing.points.empty()) {
-    figure.panels.push_back(
-        panel_of(found.ageing, has_ageing(found.law), "S", {"time at rest before the slip (s)", true}, true));
+    figure.panels.push_back(panel_of(found.ageing, has_ageing(found.law),
+                                     found.is_rate_and_state() ? &*found.rate_and_state : nullptr, "S",
+                                     {"time at rest before the slip (s)", true}, true));
   }
   if (!found.rate.points.empty()) {
-    figure.panels.push_back(panel_of(found.rate, has_rate(found.law), "K", {"pull speed (mm/s)"}, false));
+    figure.panels.push_back(
+        panel_of(found.rate, has_rate(found.law), nullptr, "K", {"pull speed (mm/s)"}, false));
   }
   figure.notes = {"bars: standard error of each test; dashed: the law that was not chosen"};
+  if (found.is_rate_and_state())
+    figure.notes.emplace_back("S after a hold is less what the K of its faster slip is lower");
   return figure;
 }
 

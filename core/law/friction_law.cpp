@@ -208,6 +208,10 @@ std::string_view name(Law law) noexcept {
   return kNames[static_cast<std::size_t>(law)];
 }
 
+std::string_view name(const FrictionLaw& found) noexcept {
+  return found.is_rate_and_state() ? "rate-and-state" : name(found.law);
+}
+
 FrictionLaw find_law(std::span<const LawTest> tests) {
   STICKSLIP_EXPECTS(!tests.empty());
   FrictionLaw found;
@@ -225,6 +229,16 @@ FrictionLaw find_law(std::span<const LawTest> tests) {
   judge(found.ageing, has_ageing(found.law), "S on the stick time", measure.what_matters, unknown);
   judge(found.rate, has_rate(found.law), "K on the speed", measure.what_matters, unknown);
   found.told = found.ageing.verdict != Verdict::kCannotTell && found.rate.verdict != Verdict::kCannotTell;
+  found.rate_and_state = rate_and_state(tests, found.ageing.points, found.ageing.tests);
+  if (found.is_rate_and_state()) {
+    found.told = true;
+    for (Dependence* own : {&found.ageing, &found.rate}) own->reason.clear();
+  } else if (found.told && found.rate_and_state && !found.rate_and_state->may_have_none) {
+    found.told = false;
+    found.ageing.verdict = Verdict::kCannotTell;
+    found.ageing.reason =
+        "S seems to depend on the speed beside the time at rest, as of rate-and-state friction";
+  }
   return found;
 }
 

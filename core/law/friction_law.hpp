@@ -35,6 +35,7 @@
 #include <vector>
 
 #include "core/law/line.hpp"
+#include "core/law/rate_and_state.hpp"
 
 namespace stickslip::law {
 
@@ -99,13 +100,22 @@ struct Dependence {
 inline constexpr std::size_t kFewestTests = 4;
 
 struct FrictionLaw {
-  Law law = Law::kConstant;  ///< Named if `told`; else the leading one.
+  Law law = Law::kConstant;  ///< Named if `told` and not rate-and-state; else the leading one.
   bool told = false;
+  [[nodiscard]] bool is_rate_and_state() const noexcept {
+    return rate_and_state && rate_and_state->has_direct_effect;
+  }
   std::optional<std::array<LawScore, kLaws.size()>> scores;  ///< Absent with fewer than kFewestTests.
   Dependence ageing;                                         ///< Of S.
   Dependence rate;                                           ///< Of K.
+  /// Present where there are pulls and holds for it. If it has a direct effect, it is the law, and `told`: no
+  /// line over the time at rest alone then describes pulls and holds together.
+  std::optional<RateAndState> rate_and_state;
   double delta_mu = 0.0;  ///< S − K, by whose tenth a dependence matters; a tenth of K where no test has S.
 };
+
+/// "rate-and-state", or the name of found.law.
+[[nodiscard]] std::string_view name(const FrictionLaw& found) noexcept;
 
 /// \param tests  at least one.
 [[nodiscard]] FrictionLaw find_law(std::span<const LawTest> tests);

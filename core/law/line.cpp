@@ -13,16 +13,13 @@
 namespace stickslip::law {
 namespace {
 
-constexpr double kOutside95 = 0.05;
-
 struct Solution {
   Eigen::Vector2d value = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
   double middle = 0.0;  ///< Of the places, weighted.
   double at_middle = 0.0;
   double middle_variance = 0.0;
-  double chi_squared = 0.0;  ///< Weighted squares of the residuals.
-  double squares = 0.0;      ///< Of the residuals, unweighted.
+  Leftover left;
 };
 
 /// About the weighted middle of the places, where level and slope are independent.
@@ -62,27 +59,10 @@ Solution solve(std::span<const Point> points, bool with_slope, double between_va
   }
   for (const Point& point : points) {
     const double residual = point.y - level - slope * (point.x - middle);
-    solution.squares += residual * residual;
-    solution.chi_squared += weight(point) * residual * residual;
+    solution.left.squares += residual * residual;
+    solution.left.chi_squared += weight(point) * residual * residual;
   }
   return solution;
-}
-
-/// [Paule and Mandel 1982]: χ²(τ²) falls, and is below its degrees of freedom at the variance of the
-/// unweighted residuals.
-double between_variance_of(std::span<const Point> points, bool with_slope, double freedom) {
-  const auto excess = [&](double variance) {
-    return solve(points, with_slope, variance).chi_squared - freedom;
-  };
-  if (!(excess(0.0) > 0.0)) return 0.0;
-  double high = solve(points, with_slope, 0.0).squares / freedom;
-  if (!(high > 0.0)) return 0.0;
-  if (!(excess(high) < 0.0)) return high;
-  constexpr int kBits = 40;
-  std::uintmax_t most_steps = 200;
-  const auto [below, above] = boost::math::tools::toms748_solve(
-      excess, 0.0, high, boost::math::tools::eps_tolerance<double>{kBits}, most_steps);
-  return 0.5 * (below + above);
 }
 
 /// But for roundings.
@@ -98,6 +78,25 @@ bool one_place(std::span<const Point> points) {
 
 double two_sided_t(double freedom, double outside) {
   return boost::math::quantile(boost::math::complement(boost::math::students_t{freedom}, 0.5 * outside));
+}
+
+// χ²(τ²) falls, and is below its degrees of freedom at the variance of the unweighted residuals.
+double between_variance_of(const std::function<Leftover(double)>& fit, double freedom) {
+  const auto excess = [&](double variance) { return fit(variance).chi_squared - freedom; };
+  if (!(excess(0.0) > 0.0)) return 0.0;
+  double high = fit(0.0).squares / freedom;
+  if (!(high > 0.0)) return 0.0;
+  if (!(excess(high) < 0.0)) return high;
+  constexpr int kBits = 40;
+  std::uintmax_t most_steps = 200;
+  const auto [below, above] = boost::math::tools::toms748_solve(
+      excess, 0.0, high, boost::math::tools::eps_tolerance<double>{kBits}, most_steps);
+  return 0.5 * (below + above);
+}
+
+double student_factor(double freedom) {
+  constexpr double kOutside = 0.05;
+  return 0.5 * two_sided_t(freedom, kOutside);
 }
 
 Line::Prediction Line::predicted(double x) const noexcept {
@@ -119,7 +118,8 @@ std::optional<Line> fit_line(std::span<const Point> points, bool with_slope) {
   if (points.size() <= parameters || (with_slope && one_place(points))) return std::nullopt;
   Line line;
   line.freedom = static_cast<double>(points.size() - parameters);
-  line.between_variance = between_variance_of(points, with_slope, line.freedom);
+  line.between_variance = between_variance_of(
+      [&](double variance) { return solve(points, with_slope, variance).left; }, line.freedom);
   const Solution found = solve(points, with_slope, line.between_variance);
   line.covariance = found.covariance;
   line.middle = found.middle;
@@ -128,7 +128,7 @@ std::optional<Line> fit_line(std::span<const Point> points, bool with_slope) {
   std::vector<Point> moved{points.begin(), points.end()};
   for (Point& point : moved) point.y += point.systematic;
   const Solution other = solve(moved, with_slope, line.between_variance);
-  const double widened = 0.5 * two_sided_t(line.freedom, kOutside95);
+  const double widened = student_factor(line.freedom);
   const auto parameter = [&](Eigen::Index i) {
     return Parameter{found.value[i], widened * std::sqrt(found.covariance(i, i)),
                      std::abs(other.value[i] - found.value[i])};

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -50,10 +51,22 @@ struct Line {
 /// Quantile of Student's t that leaves this probability outside on both sides together.
 [[nodiscard]] double two_sided_t(double freedom, double outside);
 
-/// Weighted least squares with weights 1/(error² + τ²). τ² is the one for which the weighted squares of the
-/// residuals add up to their degrees of freedom, or zero [Paule and Mandel, J. Res. NBS 87:377–385, 1982;
-/// DerSimonian and Kacker, Contemp. Clin. Trials 28:105–114, 2007]; errors of the parameters by Student's t
-/// [Knapp and Hartung, Stat. Med. 22:2693–2710, 2003].
+/// By which a standard error is multiplied to be half of the half width of the 95 % interval.
+[[nodiscard]] double student_factor(double freedom);
+
+/// What a fit with weights 1/(error² + τ²) leaves over.
+struct Leftover {
+  double chi_squared = 0.0;  ///< Weighted squares of the residuals.
+  double squares = 0.0;      ///< Of the residuals, unweighted.
+};
+
+/// τ² for which the weighted squares of the residuals add up to their degrees of freedom, or zero [Paule and
+/// Mandel, J. Res. NBS 87:377–385, 1982; DerSimonian and Kacker, Contemp. Clin. Trials 28:105–114, 2007].
+/// \param fit  with this τ².
+[[nodiscard]] double between_variance_of(const std::function<Leftover(double)>& fit, double freedom);
+
+/// Weighted least squares with weights 1/(error² + τ²), τ² by between_variance_of(); errors of the parameters
+/// by Student's t [Knapp and Hartung, Stat. Med. 22:2693–2710, 2003].
 /// \return nullopt if there are no more points than parameters, or one place alone for a slope.
 [[nodiscard]] std::optional<Line> fit_line(std::span<const Point> points, bool with_slope);
 

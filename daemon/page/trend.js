@@ -13,9 +13,10 @@ const Trend = (() => {
 
   const title = chart => `${titles[chart.chart] ?? chart.chart}${chart.unit === "1" ? "" : `, ${chart.unit}`}`;
   const number = value => (value == null ? "–" : String(Number(value.toPrecision(4))));
+  const size = value => number(value == null ? null : Math.abs(value));
   function told(chart) {
     const values = `${chart.test_count} test${chart.test_count === 1 ? "" : "s"}, mean ${number(chart.mean)}, standard deviation ${number(chart.standard_deviation)}, latest ${number(chart.latest)}`;
-    if (chart.alarm) return `${chart.alarm.rises ? "rose" : "fell"} by ${number(Math.abs(chart.alarm.shift))} with the test of ${Tables.minute(chart.alarm.since)}; ${values}`;
+    if (chart.alarm) return `${chart.alarm.rises ? "rose" : "fell"} by ${size(chart.alarm.shift)} with the test of ${Tables.minute(chart.alarm.since)}; ${values}`;
     return chart.test_count === 0 ? chart.reason ?? "no test yet" : values;
   }
 
@@ -65,11 +66,20 @@ const Trend = (() => {
     }
   }
 
+  function fit() {
+    if (!box.open) return;  // A closed one has no width.
+    for (const [name, {u}] of drawn) u.setSize({width: document.getElementById(`trend-${name}-chart`).clientWidth, height: kHeight});
+  }
+
+  let loads = 0;  // An answer counts until the next is asked for.
   async function load() {
+    const own = ++loads;
     message.textContent = "";
     try {
-      show(await ask("GET", "/v1/trend"));
+      const trend = await ask("GET", "/v1/trend");
+      if (own === loads) show(trend);
     } catch (error) {
+      if (own !== loads) return;
       message.textContent = error.message;
       known = null;  // Once more with the next status.
     }
@@ -89,8 +99,11 @@ const Trend = (() => {
     known = now;
     load();
   }
-  box.addEventListener("toggle", follow);
-  window.addEventListener("resize", () => { for (const [name, {u}] of drawn) u.setSize({width: document.getElementById(`trend-${name}-chart`).clientWidth, height: kHeight}); });
+  box.addEventListener("toggle", () => {
+    fit();
+    follow();
+  });
+  window.addEventListener("resize", fit);
 
   return {
     /// \param asking  (method, path) → JSON.

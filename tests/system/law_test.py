@@ -5,6 +5,7 @@ law_test.py BUILD_DIR SOURCE_DIR [unittest arguments]
 """
 
 import json
+import math
 import pathlib
 import subprocess
 import sys
@@ -135,6 +136,45 @@ class Law(unittest.TestCase):
             rests = [test["stick_time"] for test in found["tests"]]
             for rest, hold in zip(rests[1:], (1, 3, 10, 30)):
                 self.assertLess(abs(rest - hold), 0.12)  # With the rise after it.
+
+    def test_slow_pulls_and_holds_tell_rate_and_state_friction(self):
+        def section(scene, name):
+            text = (SOURCE / "config" / "scenes" / f"{scene}.toml").read_text(encoding="utf-8")
+            begin = text.index(f"[effects.{name}]")
+            return text, text[begin:text.index("[effects.", begin + 1)]
+
+        _, contact = section("rate-and-state-ageing", "rate_and_state")
+        holds, ageing = section("slide-hold-slide", "contact_ageing")
+        scene = self.folder / "holds-of-rate-and-state.toml"
+        scene.write_text("accuracy = 1e-6\n" + holds.replace(ageing, contact), encoding="utf-8")
+        sheet = self.folder / "sheet.h5"
+        done = run(CLI, "simulate", scene, "-o", sheet)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        pulls = [self.simulate("rate-and-state-ageing", speed, 1, "--set", f"effects.constant_speed.pull={8 / speed + 2} s")
+                 for speed in (0.25, 0.5, 1, 2)]
+
+        # Pulls alone tell b - a, as an S that rises with the time at rest: (0.025 - 0.010) ln 10 a decade.
+        alone = self.law(*pulls)
+        self.assertNotEqual(alone["leading_law"], "rate-and-state")
+        self.assertLess(abs(alone["parameters"]["beta"]["value"] - 0.0345), 0.004)
+
+        found = self.law(*pulls, sheet)
+        self.assertEqual(found["law"], "rate-and-state")
+        for name, truth in (("a", 0.010), ("b", 0.025)):
+            own = found["parameters"][name]
+            error = math.hypot(own["standard_error"], own["systematic_uncertainty"])
+            self.assertLess(abs(own["value"] - truth), 2 * error, name)
+            self.assertLess(error, 0.5 * truth, name)
+        slip = found["parameters"]["critical_slip"]
+        self.assertLess(abs(math.log(slip["value"] / 2e-6)), math.log(slip["within_factor"]))
+        for test in found["tests"]:
+            self.assertLess(abs(test["mu_s"]["residual"]), 0.003)
+        picture = self.folder / "rate-and-state.svg"
+        done = run(CLI, "law", *pulls, sheet, "--plot", picture)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("law: rate-and-state: S depends on the time at rest and on the speed", done.stdout)
+        self.assertIn("within a factor of 4", done.stdout)
+        self.assertIn("holds, at one speed", picture.read_text(encoding="utf-8"))
 
     def test_the_picture_is_made_once(self):
         picture = self.folder / "law.svg"

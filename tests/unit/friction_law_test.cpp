@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -343,6 +344,108 @@ TEST(FrictionLaw, AsksForALongerHoldWhereHoldsAreMade) {
   EXPECT_TRUE(next->tells_ageing);
   EXPECT_EQ(next->hold_s, kLongestHold_s);
   EXPECT_NEAR(next->pull_speed_m_per_s, 3.0 * kInPerMin, 1e-12);
+}
+
+/// Pulls at four speeds, and slips after four holds at 3 in/min, of a rate-and-state contact. The S of a slip
+/// after a hold is as it is measured: on the K of usual slips, which are slower.
+std::vector<LawTest> rate_and_state_tests(double a, double b) {
+  constexpr double kK = 0.30;
+  constexpr double kError = 5e-4;
+  const auto S = [&](double v, double rest_s) {
+    return 0.45 + a * std::log(v / (3.0 * kInPerMin)) + b * std::log(rest_s);
+  };
+  std::vector<LawTest> tests;
+  double sign = 1.0;
+  for (const double speed : {0.75, 1.5, 3.0, 6.0}) {
+    LawTest test = test_at(speed, 0.0, 0.0, 0.0, kError);
+    test.S->value = S(test.pull_speed_m_per_s, *test.stick_time_s) + 0.5 * (sign = -sign) * kError;
+    test.K->value = kK;
+    tests.push_back(test);
+  }
+  const double usual = tests[2].S->value - kK;
+  for (const double hold_s : {1.0, 3.0, 10.0, 30.0}) {
+    LawTest test;
+    test.pull_speed_m_per_s = 3.0 * kInPerMin;
+    test.stick_time_s = hold_s;
+    test.held = true;
+    const double own = S(test.pull_speed_m_per_s, hold_s);
+    double measured = own;
+    for (int i = 0; i < 50; ++i) measured = own + (b - a) * std::log((measured - kK) / usual);
+    test.S = Value{measured + 0.5 * (sign = -sign) * kError, kError, 0.0};
+    tests.push_back(test);
+  }
+  return tests;
+}
+
+TEST(RateAndStates, PullsAndHoldsTellBothEffects) {
+  const std::vector<LawTest> tests = rate_and_state_tests(0.010, 0.025);
+  const FrictionLaw found = find_law(tests);
+  ASSERT_TRUE(found.is_rate_and_state());
+  EXPECT_TRUE(found.told);
+  EXPECT_EQ(name(found), "rate-and-state");
+  const RateAndState& law = *found.rate_and_state;
+  EXPECT_NEAR(law.a.value, 0.010, 2.0 * law.a.error);
+  EXPECT_NEAR(law.b.value, 0.025, 2.0 * law.b.error);
+  EXPECT_LT(law.b.error, 0.0005);
+  EXPECT_GE(law.a.systematic, kDirectEffectPart * law.a.value);
+  for (std::size_t i = 0; i < tests.size(); ++i) EXPECT_NEAR(*law.S[i], tests[i].S->value, 1e-3) << i;
+  EXPECT_FALSE(next_pull(found, tests, {kInPerMin, 9.0 * kInPerMin}, std::nullopt));
+}
+
+/// D_c follows from the drop: with V t/D_c e times as large S − K is larger by b.
+TEST(RateAndStates, TheDropTellsTheCriticalSlip) {
+  std::vector<LawTest> tests = rate_and_state_tests(0.010, 0.025);
+  const double longer = find_law(tests).rate_and_state->critical_slip_m;
+  for (LawTest& test : tests) {
+    test.S->value += 0.025;
+  }
+  const double shorter = find_law(tests).rate_and_state->critical_slip_m;
+  EXPECT_GT(longer, 0.0);
+  // V grows with the drop, too: less than a factor of e.
+  EXPECT_NEAR(std::log(longer / shorter), 1.0, 0.35);
+}
+
+TEST(RateAndStates, AgeingAloneIsNamedAsSuch) {
+  const FrictionLaw found = find_law(rate_and_state_tests(0.0, 0.0));
+  EXPECT_FALSE(found.is_rate_and_state());
+  std::vector<LawTest> ageing = tests_at({0.75, 1.5, 3.0, 6.0}, 0.02, 0.0);
+  for (const double hold_s : {1.0, 3.0, 10.0, 30.0}) {
+    LawTest test = test_at(3.0, 0.0, 0.0);
+    test.stick_time_s = hold_s;
+    test.held = true;
+    test.K.reset();
+    test.S = Value{0.38 + 0.02 * std::log10(hold_s), 1e-4, 0.0};
+    ageing.push_back(test);
+  }
+  const FrictionLaw one = find_law(ageing);
+  EXPECT_TRUE(one.told);
+  EXPECT_EQ(name(one), "ageing");
+  ASSERT_TRUE(one.rate_and_state);
+  EXPECT_TRUE(one.rate_and_state->may_have_none);
+}
+
+/// From one below zero, which looks like none beside a K that falls, to a large one: ageing, then neither,
+/// then rate-and-state.
+TEST(RateAndStates, ADirectEffectThatIsNotCertainLeavesTheLawOpen) {
+  std::string order;
+  for (double a = -0.004; a < 0.004; a += 2e-5) {
+    const FrictionLaw found = find_law(rate_and_state_tests(a, 0.010));
+    const char now = found.is_rate_and_state() ? 'r' : found.told ? 'a' : '?';
+    if (now == '?') {
+      EXPECT_NE(found.ageing.reason.find("rate-and-state"), std::string::npos);
+    }
+    if (order.empty() || order.back() != now) order += now;
+  }
+  EXPECT_EQ(order, "a?r");
+}
+
+TEST(RateAndStates, PullsAloneOrHoldsAtOneSpeedTellNoDirectEffect) {
+  std::vector<LawTest> tests = rate_and_state_tests(0.010, 0.025);
+  EXPECT_FALSE(find_law(std::span{tests}.first(4)).rate_and_state);
+  EXPECT_FALSE(find_law(std::span{tests}.subspan(2, 1)).rate_and_state);
+  std::vector<LawTest> one_speed(tests.begin() + 4, tests.end());
+  one_speed.push_back(tests[2]);
+  EXPECT_FALSE(find_law(one_speed).rate_and_state);
 }
 
 TEST(LawTests, ATestThatChangesItsSpeedCountsByItsRests) {

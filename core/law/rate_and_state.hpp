@@ -1,0 +1,62 @@
+/// \file
+/// Rate-and-state friction from pulls at several speeds and slips after holds [Dieterich, J. Geophys. Res.
+/// 84(B5):2161–2168, 1979; Ruina, J. Geophys. Res. 88(B12):10359–10370, 1983]:
+///
+///     μ = μ₀ + a ln(V/V₀) + b ln(V₀ θ/D_c)
+///
+/// A slip begins as the sled reaches the belt's speed v, after a rest of t = θ; while it slips at up to
+/// V = (S − K) g/ω₀, θ is D_c/V:
+///
+///     S = const + a ln v + b ln t,    S − K(V) = b ln(V t/D_c) − a ln(V/v),    K = const − (b − a) ln V
+///
+/// Between pulls t is as 1/v, so that they tell b − a alone; holds at one speed tell b. This holds for a sled
+/// far softer than critical, and pulls so slow that the time of a slip does not matter: docs/friction-laws.md
+/// has what simulated tests find.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/law/line.hpp"
+
+namespace stickslip::law {
+
+struct LawTest;
+
+struct RateAndState {
+  Parameter a;
+  Parameter b;
+  double critical_slip_m = 0.0;  ///< D_c at a and b as found, within kCriticalSlipFactor.
+  /// a exceeds its 99 % interval and its systematic part.
+  bool has_direct_effect = false;
+  /// a is within its 95 % interval and its systematic part of zero.
+  bool may_have_none = true;
+  double S_at_1 = 0.0;                   ///< After 1 s at rest, at 1 m/s.
+  std::vector<std::optional<double>> S;  ///< Of each test by the law; nullopt where it has none.
+
+  // For a picture over the time at rest.
+  double log_pull_length = 0.0;  ///< Mean log₁₀ of t v over the pulls, which hardly depends on the speed.
+  double log_hold_speed = 0.0;   ///< Mean log₁₀ of v over the holds.
+  std::vector<double> K_is_lower;  ///< For each test, by how much K of its slip after a hold is.
+
+  /// \param log_rest,log_speed  log₁₀ of s and of m/s.
+  [[nodiscard]] double static_coefficient(double log_rest, double log_speed) const noexcept;
+};
+
+/// What the closed form leaves open, by simulated tests: D_c within this factor, as it takes contacts for new
+/// within no way at all and is the exponential of the drop over b; and a within this part of it.
+inline constexpr double kCriticalSlipFactor = 4.0;
+inline constexpr double kDirectEffectPart = 0.3;
+
+/// S by weighted least squares over log₁₀ t and log₁₀ v, with a variance between tests as for a line. S of a
+/// hold is its S − K on the K of usual slips: less (b − a) ln of how much larger its S − K is.
+/// \param points  S over log₁₀ of the stick time. \param of_tests  index of the test of each point.
+/// \return nullopt with fewer than five points, without a hold, or where the pulls have one speed alone or
+/// none has S and K.
+[[nodiscard]] std::optional<RateAndState> rate_and_state(std::span<const LawTest> tests,
+                                                         std::span<const Point> points,
+                                                         std::span<const std::size_t> of_tests);
+
+}  // namespace stickslip::law
