@@ -184,6 +184,7 @@ std::optional<RateAndState> rate_and_state(std::span<const LawTest> tests, std::
   found.b = parameter(1);
   found.a = parameter(2);
   found.a.systematic = std::hypot(found.a.systematic, kDirectEffectPart * found.a.value);
+  found.has_direct_effect = found.has_direct_effect && found.a.value > 0.0 && found.b.value > 0.0;
   found.critical_slip_m = critical_slip_m(usual->delta_mu, log_rest, log_speed, found.a.value, found.b.value);
   found.S.resize(tests.size());
   found.K_is_lower.resize(tests.size());
