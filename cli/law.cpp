@@ -82,7 +82,8 @@ std::vector<Named> parameters_of(const FrictionLaw& found) {
     const law::RateAndState& own = *found.rate_and_state;
     add("a", "a", "1", "for each factor of e in speed", own.a);
     add("b", "b", "1", "for each factor of e in time at rest", own.b);
-    named.push_back({"critical_slip", "D_c", "m", "", analysis::Estimate::of(own.critical_slip_m)});
+    named.push_back({"critical_slip", "D_c", "m", "of sliding makes contacts new",
+                     analysis::Estimate::of(own.critical_slip_m)});
     return named;
   }
   const bool ages = has_ageing(found.law);
@@ -105,7 +106,10 @@ std::optional<double> residual(const FrictionLaw& found, const Dependence& own, 
   const std::optional<law::Line>& line = own.fitted(with_slope);
   if (at == own.tests.end() || !line) return std::nullopt;
   const law::Point& point = own.points[static_cast<std::size_t>(at - own.tests.begin())];
-  if (&own == &found.ageing && found.is_rate_and_state()) return point.y - *found.rate_and_state->S[test];
+  if (found.is_rate_and_state()) {
+    if (&own == &found.rate || !found.rate_and_state->S[test]) return std::nullopt;
+    return point.y - *found.rate_and_state->S[test];
+  }
   return point.y - line->predicted(point.x).value;
 }
 
@@ -186,10 +190,10 @@ std::string reason_text(std::string_view reason) {
   return text;
 }
 
-std::string critical_slip_text(double critical_slip_m) {
+std::string critical_slip_text(const law::RateAndState& found) {
   constexpr double kMicrometresPerMetre = 1e6;
-  return fmt::format("{:.1g} µm, within a factor of {:g}", kMicrometresPerMetre * critical_slip_m,
-                     law::kCriticalSlipFactor);
+  return fmt::format("{:.1g} µm, within a factor of {:.1g}", kMicrometresPerMetre * found.critical_slip_m,
+                     found.within_factor);
 }
 
 std::string text_of(const Shown& shown) {
@@ -205,7 +209,7 @@ std::string text_of(const Shown& shown) {
   for (const Named& own : parameters_of(found)) {
     list.add({std::string{"  "} + own.symbol,
               own.value.standard_error ? io::uncertain(own.value, kLawDecimals).text()
-                                       : critical_slip_text(*own.value.value),
+                                       : critical_slip_text(*found.rate_and_state),
               std::string{own.meaning}});
   }
   text += fmt::format("\n{}{}\n", list.text(), io::kErrorsLegend);
@@ -260,8 +264,8 @@ Json json_of(const Shown& shown) {
   for (const Named& own : parameters_of(found))
     json["parameters"][own.name] = estimate_json(own.value, own.unit);
   if (found.is_rate_and_state())
-    json["parameters"]["critical_slip"]["within_factor"] = law::kCriticalSlipFactor;
-  for (std::size_t i = 0; found.scores && i < law::kLaws.size(); ++i) {
+    json["parameters"]["critical_slip"]["within_factor"] = io::or_null(found.rate_and_state->within_factor);
+  for (std::size_t i = 0; found.scores && !found.is_rate_and_state() && i < law::kLaws.size(); ++i) {
     const law::LawScore& own = (*found.scores)[i];
     json["scores"].push_back({{"law", name(law::kLaws[i])},
                               {"score", io::or_null(own.score)},
@@ -271,6 +275,11 @@ Json json_of(const Shown& shown) {
   for (const auto& [key, own, with_slope] : {std::tuple{"mu_s", &found.ageing, has_ageing(found.law)},
                                              {"mu_k", &found.rate, has_rate(found.law)}}) {
     const std::optional<law::Line>& line = own->fitted(with_slope);
+    if (found.is_rate_and_state()) {
+      json["between_tests"][key] =
+          own == &found.ageing ? Json(std::sqrt(found.rate_and_state->between_variance)) : Json(nullptr);
+      continue;
+    }
     json["between_tests"][key] = line ? Json(std::sqrt(line->between_variance)) : Json(nullptr);
   }
   for (std::size_t i = 0; i < shown.tests.tests.size(); ++i) {

@@ -31,7 +31,7 @@ plot::Curve curve_of(const std::function<double(double)>& law, double low, doubl
 }
 
 /// Points with their errors, and the lines: those of the law drawn through, the others dashed.
-/// \param both  S depends on the speed, too: pulls and holds have lines of their own. nullptr: it does not.
+/// \param both  S depends on the speed, too: what the law says of each test. nullptr: it does not.
 plot::Panel panel_of(const law::Dependence& own, bool with_slope, const law::RateAndState* both,
                      const char* symbol, plot::Axis x, bool x_is_log) {
   plot::Panel panel{.y = {symbol}, .own_x = std::move(x)};
@@ -43,8 +43,7 @@ plot::Panel panel_of(const law::Dependence& own, bool with_slope, const law::Rat
     return x_is_log ? std::pow(10.0, place) : report::kMillimetresPerMetre * place;
   };
   for (std::size_t i = 0; i < own.points.size(); ++i) {
-    law::Point point = own.points[i];
-    if (both != nullptr) point.y -= both->K_is_lower[own.tests[i]];
+    const law::Point& point = own.points[i];
     low = std::min(low, point.x);
     high = std::max(high, point.x);
     points.x.push_back(shown(point.x));
@@ -63,11 +62,14 @@ plot::Panel panel_of(const law::Dependence& own, bool with_slope, const law::Rat
     panel.curves.push_back(std::move(curve));
   };
   if (both != nullptr) {
-    draw(
-        [&](double log_rest) { return both->static_coefficient(log_rest, both->log_pull_length - log_rest); },
-        "pulls: the longer at rest, the slower", true, plot::Colour::kBlue);
-    draw([&](double log_rest) { return both->static_coefficient(log_rest, both->log_hold_speed); },
-         "holds, at one speed", true, plot::Colour::kVermilion);
+    plot::Curve law{
+        .label = "rate-and-state", .style = plot::CurveStyle::kPoints, .colour = plot::Colour::kVermilion};
+    for (std::size_t i = 0; i < own.points.size(); ++i) {
+      if (!both->S[own.tests[i]]) continue;
+      law.x.push_back(shown(own.points[i].x));
+      law.y.push_back(*both->S[own.tests[i]]);
+    }
+    panel.curves.push_back(std::move(law));
   } else {
     if (own.constant)
       draw([&](double place) { return own.constant->predicted(place).value; },
@@ -113,8 +115,6 @@ plot::Figure law_figure(const law::FrictionLaw& found) {
         panel_of(found.rate, has_rate(found.law), nullptr, "K", {"pull speed (mm/s)"}, false));
   }
   figure.notes = {"bars: standard error of each test; dashed: the law that was not chosen"};
-  if (found.is_rate_and_state())
-    figure.notes.emplace_back("S after a hold is less what the K of its faster slip is lower");
   return figure;
 }
 

@@ -232,12 +232,17 @@ FrictionLaw find_law(std::span<const LawTest> tests) {
   found.rate_and_state = rate_and_state(tests, found.ageing.points, found.ageing.tests);
   if (found.is_rate_and_state()) {
     found.told = true;
-    for (Dependence* own : {&found.ageing, &found.rate}) own->reason.clear();
+    for (Dependence* own : {&found.ageing, &found.rate}) {
+      own->verdict = Verdict::kYes;
+      own->reason.clear();
+    }
   } else if (found.told && found.rate_and_state && !found.rate_and_state->may_have_none) {
     found.told = false;
     found.ageing.verdict = Verdict::kCannotTell;
     found.ageing.reason =
-        "S seems to depend on the speed beside the time at rest, as of rate-and-state friction";
+        "S may depend on the pull speed as well as on the time at rest (rate-and-state friction): add a "
+        "sheet "
+        "with holds";
   }
   return found;
 }

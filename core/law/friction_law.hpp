@@ -53,7 +53,8 @@ struct LawTest {
   std::optional<double> stick_time_s;  ///< Of its slips, geometric mean; > 0; with S.
   std::optional<Value> S;
   std::optional<Value> K;
-  bool held = false;  ///< The belt stood still for the stick time, whatever its speed.
+  bool held = false;      ///< The belt stood still for the stick time, whatever its speed.
+  std::size_t sheet = 0;  ///< Which sheet: one may count several times, by its rests.
 };
 
 /// In the order of their scores.
@@ -102,14 +103,12 @@ inline constexpr std::size_t kFewestTests = 4;
 struct FrictionLaw {
   Law law = Law::kConstant;  ///< Named if `told` and not rate-and-state; else the leading one.
   bool told = false;
-  [[nodiscard]] bool is_rate_and_state() const noexcept {
-    return rate_and_state && rate_and_state->has_direct_effect;
-  }
+  [[nodiscard]] bool is_rate_and_state() const noexcept { return rate_and_state && rate_and_state->is_told; }
   std::optional<std::array<LawScore, kLaws.size()>> scores;  ///< Absent with fewer than kFewestTests.
   Dependence ageing;                                         ///< Of S.
   Dependence rate;                                           ///< Of K.
-  /// Present where there are pulls and holds for it. If it has a direct effect, it is the law, and `told`: no
-  /// line over the time at rest alone then describes pulls and holds together.
+  /// Present where there are pulls and holds for it. If `is_told`, it is the law: no line over
+  /// the time at rest alone then describes pulls and holds together.
   std::optional<RateAndState> rate_and_state;
   double delta_mu = 0.0;  ///< S − K, by whose tenth a dependence matters; a tenth of K where no test has S.
 };

@@ -90,13 +90,15 @@ LawTests tests_for_law(std::span<const MeasuredTest> measured) {
       continue;
     }
     if (counts_by_rests(measured[i])) {
-      for (const LawTest& rest : tests_of_rests(measured[i])) {
+      for (LawTest rest : tests_of_rests(measured[i])) {
+        rest.sheet = i;
         result.tests.push_back(rest);
         result.measured.push_back(i);
       }
       continue;
     }
     LawTest test;
+    test.sheet = i;
     test.pull_speed_m_per_s = *measured[i].pull_speed_m_per_s;
     test.stick_time_s = measured[i].stick_time_s;
     const bool steady = results.regime == model::Regime::kSteadySliding;

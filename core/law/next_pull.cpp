@@ -90,7 +90,8 @@ SpeedRange usual_range(std::span<const LawTest> tests) {
 
 std::optional<NextPull> next_pull(const FrictionLaw& found, std::span<const LawTest> tests,
                                   const SpeedRange& range, std::optional<double> highest_sticking_m_per_s) {
-  if (found.is_rate_and_state()) return std::nullopt;
+  // More holds tell a, not another pull.
+  if (found.rate_and_state && !found.rate_and_state->may_have_none) return std::nullopt;
   // S is asked first: a pull that tells it tells K, too.
   const double sticking = highest_sticking_m_per_s
                               ? std::min(range.to_m_per_s, kSafelySticking * *highest_sticking_m_per_s)

@@ -28,21 +28,13 @@ struct LawTest;
 struct RateAndState {
   Parameter a;
   Parameter b;
-  double critical_slip_m = 0.0;  ///< D_c at a and b as found, within kCriticalSlipFactor.
-  /// a exceeds its 99 % interval and its systematic part.
-  bool has_direct_effect = false;
-  /// a is within its 95 % interval and its systematic part of zero.
-  bool may_have_none = true;
-  double S_at_1 = 0.0;                   ///< After 1 s at rest, at 1 m/s.
-  std::vector<std::optional<double>> S;  ///< Of each test by the law; nullopt where it has none.
-
-  // For a picture over the time at rest.
-  double log_pull_length = 0.0;  ///< Mean log₁₀ of t v over the pulls, which hardly depends on the speed.
-  double log_hold_speed = 0.0;   ///< Mean log₁₀ of v over the holds.
-  std::vector<double> K_is_lower;  ///< For each test, by how much K of its slip after a hold is.
-
-  /// \param log_rest,log_speed  log₁₀ of s and of m/s.
-  [[nodiscard]] double static_coefficient(double log_rest, double log_speed) const noexcept;
+  double critical_slip_m = 0.0;  ///< D_c at a and b as found.
+  double within_factor = 0.0;    ///< D_c is known within it: what the closed form leaves open, and a and b.
+  /// a exceeds its 99 % interval and its systematic part, b and b − a exceed their 95 % intervals.
+  bool is_told = false;
+  bool may_have_none = true;             ///< a does not exceed its 95 % interval and its systematic part.
+  double between_variance = 0.0;         ///< Between pulls, of S.
+  std::vector<std::optional<double>> S;  ///< Of each test by the law; nullopt where it counts for nothing.
 };
 
 /// What the closed form leaves open, by simulated tests: D_c within this factor, as it takes contacts for new
@@ -50,11 +42,12 @@ struct RateAndState {
 inline constexpr double kCriticalSlipFactor = 4.0;
 inline constexpr double kDirectEffectPart = 0.3;
 
-/// S by weighted least squares over log₁₀ t and log₁₀ v, with a variance between tests as for a line. S of a
-/// hold is its S − K on the K of usual slips: less (b − a) ln of how much larger its S − K is.
-/// \param points  S over log₁₀ of the stick time. \param of_tests  index of the test of each point.
-/// \return nullopt with fewer than five points, without a hold, or where the pulls have one speed alone or
-/// none has S and K.
+/// b by the slopes of S over log₁₀ t within sheets with holds, each of which has a level of its own; b − a by
+/// the slope between the other pulls; a by their difference. S of a hold is its S − K on the K of usual
+/// slips: less (b − a) ln of how much larger its S − K is. Pulls whose time at rest is not long beside the
+/// time of a slip are left out. \param points  S over log₁₀ of the stick time. \param of_tests  index of the
+/// test of each point. \return nullopt without a sheet with holds, without three slow pulls at two speeds, or
+/// without a degree of freedom for b.
 [[nodiscard]] std::optional<RateAndState> rate_and_state(std::span<const LawTest> tests,
                                                          std::span<const Point> points,
                                                          std::span<const std::size_t> of_tests);
