@@ -196,6 +196,11 @@ std::string critical_slip_text(const law::RateAndState& found) {
                      found.within_factor);
 }
 
+/// Between pulls the time at rest is as 1/v: ageing and a dependence on the speed are one there.
+bool leaves_rate_and_state_open(const FrictionLaw& found) {
+  return found.told && has_ageing(found.law) && !found.rate_and_state;
+}
+
 std::string text_of(const Shown& shown) {
   const FrictionLaw& found = shown.law;
   std::string text = found.told ? fmt::format("law: {}: {}\n", name(found), in_words(found))
@@ -203,6 +208,11 @@ std::string text_of(const Shown& shown) {
                                               name(found), in_words(found));
   for (const Dependence* own : {&found.ageing, &found.rate}) {
     if (!own->reason.empty()) text += reason_text(own->reason);
+  }
+  if (leaves_rate_and_state_open(found)) {
+    text += reason_text(
+        "rate-and-state friction is not ruled out: it looks the same without slow pulls and a sheet with "
+        "holds");
   }
   if (shown.next) text += next_text(*shown.next);
   io::Table list = io::Table::list({6, 0, 0});
@@ -246,6 +256,7 @@ Json json_of(const Shown& shown) {
   Json json{{"law", found.told ? Json(name(found)) : Json(nullptr)},
             {"leading_law", name(found)},
             {"reasons", Json::array()},
+            {"not_ruled_out", Json::array()},
             {"next_pull", nullptr},
             {"parameters", Json::object()},
             {"scores", Json::array()},
@@ -255,6 +266,7 @@ Json json_of(const Shown& shown) {
   for (const Dependence* own : {&found.ageing, &found.rate}) {
     if (!own->reason.empty()) json["reasons"].push_back(own->reason);
   }
+  if (leaves_rate_and_state_open(found)) json["not_ruled_out"].push_back("rate-and-state");
   if (shown.next) {
     json["next_pull"] = {{"pull_speed", shown.next->pull_speed_m_per_s},
                          {"hold", io::or_null(shown.next->hold_s)},

@@ -173,7 +173,7 @@ class SectionFitter {
   Section next(std::size_t first) {
     Task own = next_.first == first && next_.section.valid() ? std::move(next_) : begin(first);
     const std::size_t end = first + own.size;
-    next_ = {};
+    next_ = {};  // After a wrong guess this waits until that fit has ended.
     if (settings_.on_threads && end < slips_.size()) next_ = begin(end - 1);
     return own.section.get();
   }

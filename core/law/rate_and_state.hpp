@@ -39,7 +39,7 @@ struct RateAndState {
 
 /// What the closed form leaves open, by simulated tests: D_c within this factor, as it takes contacts for new
 /// within no way at all and is the exponential of the drop over b; and a within this part of it.
-inline constexpr double kCriticalSlipFactor = 4.0;
+inline constexpr double kCriticalSlipFactor = 5.0;
 inline constexpr double kDirectEffectPart = 0.3;
 
 /// b by the slopes of S over log₁₀ t within sheets with holds, each of which has a level of its own; b − a by

@@ -54,6 +54,7 @@ class Law(unittest.TestCase):
     def test_ageing_is_named_with_its_beta(self):
         found = self.law(*self.ageing)
         self.assertEqual(found["law"], "ageing")
+        self.assertEqual(found["not_ruled_out"], ["rate-and-state"])  # These are pulls alone.
         beta = found["parameters"]["beta"]
         # The scene has 0.02 log10(1 + t/1 ms): over its rests, from 17 to 180 ms, that is 0.0196 log10 t.
         self.assertLess(abs(beta["value"] - 0.0196), 4 * beta["standard_error"])
@@ -159,7 +160,7 @@ class Law(unittest.TestCase):
         self.assertLess(abs(alone["parameters"]["beta"]["value"] - 0.0345), 0.004)
 
         found = self.law(*pulls, sheet)
-        self.assertEqual(found["law"], "rate-and-state")
+        self.assertEqual((found["law"], found["not_ruled_out"]), ("rate-and-state", []))
         for name, truth in (("a", 0.010), ("b", 0.025)):
             own = found["parameters"][name]
             error = math.hypot(own["standard_error"], own["systematic_uncertainty"])
