@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <optional>
-#include <string>
 #include <utility>
 
 #include "report/millimetres.hpp"
@@ -16,19 +14,6 @@
 
 namespace stickslip::cli {
 namespace {
-
-/// From the lowest place to the highest; `shown` is the place on the axis.
-plot::Curve curve_of(const std::function<double(double)>& law, double low, double high,
-                     const std::function<double(double)>& shown) {
-  plot::Curve curve;
-  constexpr int kSteps = 50;  // A line over a logarithmic axis is no straight one.
-  for (int i = 0; i <= kSteps; ++i) {
-    const double place = low + (high - low) * i / kSteps;
-    curve.x.push_back(shown(place));
-    curve.y.push_back(law(place));
-  }
-  return curve;
-}
 
 /// Points with their errors, and the lines: those of the law drawn through, the others dashed.
 /// \param both  S depends on the speed, too: what the law says of each test. nullptr: it does not.
@@ -42,8 +27,7 @@ plot::Panel panel_of(const law::Dependence& own, bool with_slope, const law::Rat
   const auto shown = [x_is_log](double place) {
     return x_is_log ? std::pow(10.0, place) : report::kMillimetresPerMetre * place;
   };
-  for (std::size_t i = 0; i < own.points.size(); ++i) {
-    const law::Point& point = own.points[i];
+  for (const law::Point& point : own.points) {
     low = std::min(low, point.x);
     high = std::max(high, point.x);
     points.x.push_back(shown(point.x));
@@ -53,14 +37,6 @@ plot::Panel panel_of(const law::Dependence& own, bool with_slope, const law::Rat
       errors.y.push_back(y);
     }
   }
-  const auto draw = [&](const std::function<double(double)>& law, std::string label, bool chosen,
-                        plot::Colour colour) {
-    plot::Curve curve = curve_of(law, low, high, shown);
-    curve.label = std::move(label);
-    curve.style = chosen ? plot::CurveStyle::kLine : plot::CurveStyle::kDashed;
-    curve.colour = colour;
-    panel.curves.push_back(std::move(curve));
-  };
   if (both != nullptr) {
     plot::Curve law{
         .label = "rate-and-state", .style = plot::CurveStyle::kPoints, .colour = plot::Colour::kVermilion};
@@ -70,13 +46,21 @@ plot::Panel panel_of(const law::Dependence& own, bool with_slope, const law::Rat
       law.y.push_back(*both->S[own.tests[i]]);
     }
     panel.curves.push_back(std::move(law));
-  } else {
-    if (own.constant)
-      draw([&](double place) { return own.constant->predicted(place).value; },
-           fmt::format("{} constant", symbol), !with_slope, plot::Colour::kBlue);
-    if (own.line)
-      draw([&](double place) { return own.line->predicted(place).value; },
-           fmt::format("{} depends on it", symbol), with_slope, plot::Colour::kVermilion);
+  }
+  for (const bool slope : {false, true}) {
+    const std::optional<law::Line>& line = own.fitted(slope);
+    if (!line || both != nullptr) continue;
+    plot::Curve curve{
+        .label = slope ? fmt::format("{} depends on it", symbol) : fmt::format("{} constant", symbol),
+        .style = slope == with_slope ? plot::CurveStyle::kLine : plot::CurveStyle::kDashed,
+        .colour = slope ? plot::Colour::kVermilion : plot::Colour::kBlue};
+    constexpr int kSteps = 50;  // A line over a logarithmic axis is no straight one.
+    for (int i = 0; i <= kSteps; ++i) {
+      const double place = low + (high - low) * i / kSteps;
+      curve.x.push_back(shown(place));
+      curve.y.push_back(line->predicted(place).value);
+    }
+    panel.curves.push_back(std::move(curve));
   }
   panel.curves.push_back(std::move(errors));
   panel.curves.push_back(std::move(points));
