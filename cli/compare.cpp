@@ -6,6 +6,7 @@
 
 #include "cli/report_outputs.hpp"
 #include "cli/subcommands.hpp"
+#include "io/json_text.hpp"
 #include "report/report_json.hpp"
 #include "report/report_page.hpp"
 #include "report/report_text.hpp"
@@ -65,9 +66,11 @@ Result<std::string> run_compare(const CompareOptions& options) {
   }
   report::note_repeated_scans({&*a, &*b});
   const report::MaterialComparison comparison = report::compare_materials(*a, *b);
-  return deliver(options, report::comparison_csv(*a, *b, comparison),
-                 with_traces ? report::comparison_page(*a, *b, comparison, *charts) : "",
-                 report::comparison_json(*a, *b, comparison), report::comparison_text(*a, *b, comparison));
+  return deliver(options,
+                 {.csv = [&] { return report::comparison_csv(*a, *b, comparison); },
+                  .page = [&] { return report::comparison_page(*a, *b, comparison, *charts); },
+                  .json = [&] { return io::json_document(report::comparison_json(*a, *b, comparison)); },
+                  .text = [&] { return report::comparison_text(*a, *b, comparison); }});
 }
 
 constexpr const char* kCompareExamples =

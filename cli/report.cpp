@@ -4,6 +4,7 @@
 
 #include "cli/report_outputs.hpp"
 #include "cli/subcommands.hpp"
+#include "io/json_text.hpp"
 #include "report/report_json.hpp"
 #include "report/report_page.hpp"
 #include "report/report_text.hpp"
@@ -39,9 +40,10 @@ Result<std::string> run_report(const ReportOptions& options) {
           : report::read_batch("", options.batch, options.files.front(), with_traces, *pooling);
   if (!material) return tl::unexpected(material.error());
   report::note_repeated_scans({&*material});
-  return deliver(options, report::report_csv(*material),
-                 with_traces ? report::report_page(*material, *charts) : "", report::report_json(*material),
-                 report::report_text(*material));
+  return deliver(options, {.csv = [&] { return report::report_csv(*material); },
+                           .page = [&] { return report::report_page(*material, *charts); },
+                           .json = [&] { return io::json_document(report::report_json(*material)); },
+                           .text = [&] { return report::report_text(*material); }});
 }
 
 constexpr const char* kReportExamples =

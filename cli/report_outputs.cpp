@@ -4,9 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "io/json_text.hpp"
 #include "io/new_file.hpp"
-#include <nlohmann/json.hpp>
 
 #include "core/record/finaliser.hpp"
 
@@ -42,19 +40,20 @@ base::Result<void> check_outputs(const ReportOutputs& outputs) {
   return {};
 }
 
-base::Result<std::string> deliver(const ReportOutputs& outputs, const std::string& csv,
-                                  const std::string& page, const nlohmann::ordered_json& json,
-                                  const std::string& text) {
-  std::string printed = outputs.json ? io::json_document(json) : text;
-  for (const auto& [file, made] : {std::pair{&outputs.csv, &csv}, {&outputs.page, &page}}) {
+base::Result<std::string> deliver(const ReportOutputs& outputs, const ReportForms& forms) {
+  std::string printed;
+  bool text = !outputs.json;
+  for (const auto& [file, form] : {std::pair{&outputs.csv, &forms.csv}, {&outputs.page, &forms.page}}) {
     if (file->empty()) continue;
     if (*file == kStandardOutput) {
-      printed = *made;
-    } else if (auto written = io::write_new_file(*file, *made); !written) {
+      printed = (*form)();
+      text = false;
+    } else if (auto written = io::write_new_file(*file, (*form)()); !written) {
       return tl::unexpected(written.error());
     }
   }
-  return printed;
+  if (outputs.json) return forms.json();
+  return text ? forms.text() : printed;
 }
 
 }  // namespace stickslip::cli

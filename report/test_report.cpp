@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
 #include <utility>
 
 #include "report/budget_forms.hpp"
@@ -46,8 +47,9 @@ base::Result<Material> read_material(std::string label, std::span<const std::str
       material.voided.push_back({file, **std::move(voided)});
       continue;
     }
+    const std::span<const std::string> next = files.subspan(i + 1);
     base::Result<record::Record> record =
-        record::read_record_apart(file, i + 1 < files.size() ? files[i + 1] : std::string{});
+        with_traces ? record::read_record_apart(file, next) : record::read_results_apart(file, next);
     if (!record) return tl::unexpected(record.error());
     const record::TesterFacts& tester = record->header.tester;
     ReportedTest test;

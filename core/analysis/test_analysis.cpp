@@ -90,6 +90,17 @@ void take_model_results(const TestResults& model, TestResults& results) {
   });
 }
 
+/// Of the regime: a test has no number where fewer than half of its slips tell how they ended.
+Estimate stick_cycle_count(const detect::RegimeVerdict& verdict, std::size_t slip_count) {
+  if (verdict.regime == model::Regime::kUndecided) return Estimate::none("undecided: " + verdict.reason);
+  if (!verdict.captured) return Estimate::none("no fit tells which slips ended in sticking");
+  if (*verdict.captured > 0 && 2 * (verdict.told + 1) < slip_count) {
+    return Estimate::none(fmt::format("{} of {} slips tell how they ended, {} of them in sticking",
+                                      verdict.told, slip_count, *verdict.captured));
+  }
+  return Estimate::of(static_cast<double>(*verdict.captured));
+}
+
 /// Scans too few for the oscillation that was found.
 std::optional<base::Finding> sampling_finding(double scan_rate_Hz, const TestResults& results) {
   const Estimate& cycles_Hz = results.oscillation_frequency;
@@ -339,9 +350,7 @@ TestResults TestAnalysis::finish() {
     }
     results.regime = verdict.regime;
     results.regime_reason = verdict.reason;
-    results.stick_cycle_count = verdict.regime == model::Regime::kUndecided
-                                    ? Estimate::none("undecided: " + verdict.reason)
-                                    : Estimate::of(static_cast<double>(estimates.captured));
+    results.stick_cycle_count = stick_cycle_count(verdict, slips.size());
     if (slack.count > 0) {
       if (mostly_slack) void_slack_turns(why_no_K, verdict.regime, estimates.results);
       base::add(results.findings, slack_finding(slack.count, slips.size()));

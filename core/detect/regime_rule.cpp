@@ -16,8 +16,14 @@ namespace {
 struct Path {
   double log_likelihood = -std::numeric_limits<double>::infinity();
   std::size_t changed_at = 0;
+  std::size_t captured = 0;  ///< Slips.
 
-  [[nodiscard]] Path plus(double ratio) const noexcept { return {log_likelihood + ratio, changed_at}; }
+  [[nodiscard]] Path changed(double cost) const noexcept {
+    return {log_likelihood - cost, changed_at, captured};
+  }
+  [[nodiscard]] Path with_captured(double ratio) const noexcept {
+    return {log_likelihood + ratio, changed_at, captured + 1};
+  }
 };
 
 const Path& likelier(const Path& a, const Path& b) noexcept {
@@ -29,18 +35,20 @@ const Path& likelier(const Path& a, const Path& b) noexcept {
 struct Courses {
   double all_captured = 0.0;
   double all_free = 0.0;
+  std::size_t count = 0;
   Path mixed_captured;  ///< Mixed, the latest slip captured.
   Path mixed_free;
 
-  void add(std::size_t slip, bool is_first, double ratio, double change) noexcept {
+  void add(std::size_t slip, double ratio, double change) noexcept {
     const Path captured = mixed_captured;
     const Path free = mixed_free;
-    if (!is_first) {
-      mixed_captured =
-          likelier({all_free - change, slip}, likelier(captured, free.plus(-change))).plus(ratio);
-      mixed_free = likelier({all_captured - change, slip}, likelier(free, captured.plus(-change)));
+    if (count > 0) {
+      mixed_captured = likelier({all_free - change, slip, 0}, likelier(captured, free.changed(change)))
+                           .with_captured(ratio);
+      mixed_free = likelier({all_captured - change, slip, count}, likelier(free, captured.changed(change)));
     }
     all_captured += ratio;
+    ++count;
   }
   [[nodiscard]] const Path& mixed() const noexcept { return likelier(mixed_captured, mixed_free); }
 };
@@ -54,30 +62,29 @@ constexpr double kChange = 4.605170185988091;                // ln 100
 
 RegimeVerdict judge_regime(std::size_t slip_count, const base::LongColumn<double>& log_likelihood_ratios,
                            Description description) {
-  if (slip_count == 0) return {model::Regime::kSteadySliding, "no fall of the force is a slip", {}};
-  if (log_likelihood_ratios.empty()) {
-    return {model::Regime::kUndecided, "one slip: nothing after it tells how it ended", {}};
-  }
+  const auto undecided = [](std::string reason, std::size_t told = 0) {
+    return RegimeVerdict{model::Regime::kUndecided, std::move(reason), {}, told, {}};
+  };
+  if (slip_count == 0) return {model::Regime::kSteadySliding, "no fall of the force is a slip", {}, 0, 0};
+  if (log_likelihood_ratios.empty()) return undecided("one slip: nothing after it tells how it ended");
   const bool refuted = description == Description::kRefuted;
   const double largest = refuted ? kLargestDoubtfulRatio : std::numeric_limits<double>::infinity();
   Courses courses;
-  std::ptrdiff_t captured = 0;
-  std::ptrdiff_t count = 0;
+  std::size_t captured = 0;  // Each slip by itself.
   std::size_t slip = 0;
   for (const double ratio : log_likelihood_ratios) {
     if (ratio != 0.0) {  // Else it says nothing.
-      courses.add(slip, count == 0, std::clamp(ratio, -largest, largest), refuted ? kChange : 0.0);
-      ++count;
+      courses.add(slip, std::clamp(ratio, -largest, largest), refuted ? kChange : 0.0);
       if (ratio > 0.0) ++captured;
     }
     ++slip;
   }
-  if (count == 0) return {model::Regime::kUndecided, "no slip tells how it ended", {}};
-  if (description == Description::kDoubtful && captured != 0 && captured != count) {
-    return {
-        model::Regime::kUndecided,
-        fmt::format("{} of {} slips look captured, and no fit of the test tells which are", captured, count),
-        {}};
+  const std::size_t told = courses.count;
+  if (told == 0) return undecided("no slip tells how it ended");
+  if (description == Description::kDoubtful && captured != 0 && captured != told) {
+    return undecided(
+        fmt::format("{} of {} slips look captured, and no fit of the test tells which are", captured, told),
+        told);
   }
 
   struct Class {
@@ -91,15 +98,19 @@ RegimeVerdict judge_regime(std::size_t slip_count, const base::LongColumn<double
             [](const Class& a, const Class& b) { return a.log_likelihood > b.log_likelihood; });
   const double lead = classes[0].log_likelihood - classes[1].log_likelihood;
   if (lead < std::log(kDecisiveLikelihoodRatio)) {
-    return {model::Regime::kUndecided,
-            fmt::format("{} is only {:.1f} times as likely as {}, {:.0f} are wanted",
-                        model::name(classes[0].regime), std::exp(lead), model::name(classes[1].regime),
-                        kDecisiveLikelihoodRatio),
-            {}};
+    return undecided(fmt::format("{} is only {:.1f} times as likely as {}, {:.0f} are wanted",
+                                 model::name(classes[0].regime), std::exp(lead),
+                                 model::name(classes[1].regime), kDecisiveLikelihoodRatio),
+                     told);
   }
   RegimeVerdict verdict;
   verdict.regime = classes[0].regime;
-  verdict.reason = fmt::format("{} of {} slips ended in sticking", captured, count);
+  verdict.told = told;
+  verdict.captured = verdict.regime == model::Regime::kStickSlip  ? told
+                     : verdict.regime == model::Regime::kRingDown ? 0
+                                                                  : courses.mixed().captured;
+  verdict.reason = fmt::format("{} of {} slips ended in sticking", *verdict.captured, told);
+  if (*verdict.captured != captured) verdict.reason += fmt::format(" (taken one by one: {})", captured);
   if (verdict.regime == model::Regime::kMixed) verdict.transition_slip = courses.mixed().changed_at;
   return verdict;
 }
@@ -115,11 +126,12 @@ RegimeVerdict judge_by_shape(const CycleShape& shape, RegimeVerdict by_ends, boo
                   shape.rise_over_fall);
   const bool rests = shape.rise_over_fall > kNoRest;
   if (!model_describes && !rests)
-    return {model::Regime::kInertialOscillation, shape_text + ": the sled never rests", {}};
+    return {model::Regime::kInertialOscillation, shape_text + ": the sled never rests", {}, by_ends.told, 0};
   const bool doubtful = by_ends.regime == model::Regime::kUndecided ||
                         (by_ends.regime == model::Regime::kRingDown && !model_describes);
   if (doubtful && rests)
-    return {model::Regime::kStickSlip, shape_text + ": the sled rests between the slips", {}};
+    return {
+        model::Regime::kStickSlip, shape_text + ": the sled rests between the slips", {}, by_ends.told, {}};
   return by_ends;
 }
 

@@ -15,6 +15,11 @@ struct RegimeVerdict {
   std::string reason;
   /// mixed only: the first slip after which the other behaviour began.
   std::optional<std::size_t> transition_slip;
+  std::size_t told = 0;  ///< Slips that tell how they ended.
+  /// Of those the ones that ended in sticking, in the likeliest course of the regime: none in one that never
+  /// sticks, whatever a slip by itself looks like. Absent: the regime is that of the cycles' shape, or
+  /// undecided.
+  std::optional<std::size_t> captured;
 };
 
 /// Likelihood ratio of the best two regimes below which the result is undecided.
@@ -30,8 +35,7 @@ enum class Description {
 /// \param slip_count  slips of the test.
 /// \param log_likelihood_ratios  captured over free, one for each slip but the last.
 /// \param description  of the trace by the model on which the ratios rest. If it is refuted each ratio counts
-/// for
-///        little, and slips that end otherwise than their neighbours must outweigh the changes of behaviour.
+/// for little, and slips that end otherwise than their neighbours must outweigh the changes of behaviour.
 [[nodiscard]] RegimeVerdict judge_regime(std::size_t slip_count,
                                          const base::LongColumn<double>& log_likelihood_ratios,
                                          Description description);

@@ -14,6 +14,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/base/result.hpp"
 #include "core/record/file.hpp"
@@ -41,8 +42,9 @@ class GivenFile {
 
   /// Reads at most bytes.size() bytes from `position` on. \return their number; −1 with errno on an error.
   [[nodiscard]] ssize_t read(std::span<std::byte> bytes, std::uint64_t position) const;
-  /// Reads the whole file and discards it. \return whether there was no read error.
-  [[nodiscard]] bool is_readable() const;
+  /// Reads the whole file: HDF5 crashes on a read error. One of 1 MiB or less is kept, and read() takes it
+  /// from there. To be called before other threads read. \return whether there was no read error.
+  [[nodiscard]] bool load() const;
 
   [[nodiscard]] std::uint64_t size() const noexcept { return state_->size; }
   [[nodiscard]] int descriptor() const noexcept { return state_->file.get(); }
@@ -55,13 +57,13 @@ class GivenFile {
     std::uint64_t size;
     const FileCalls* calls;
     std::atomic<int> refused{0};
+    std::vector<std::byte> kept;  ///< The whole file; empty: each read asks the system.
   };
   explicit GivenFile(std::shared_ptr<State> state) : state_(std::move(state)) {}
   std::shared_ptr<State> state_;
 };
 
-/// Opens a record: open(), share() and is_readable(). The last one is needed since HDF5 crashes on a read
-/// error.
+/// Opens a record: open(), share() and load().
 [[nodiscard]] base::Result<GivenFile> open_shared(const std::filesystem::path& path,
                                                   const FileCalls& calls = system_calls());
 

@@ -208,8 +208,12 @@ std::vector<std::string> read_text_rows(const DatasetHandle& column, const std::
   return texts_in(all, width);
 }
 
+std::size_t row_count(const DatasetHandle& dataset, const std::string& name) {
+  return count_in(space_of(dataset, name), 1, name);
+}
+
 std::size_t row_count(hid_t parent, const std::string& name) {
-  return count_in(space_of(open_dataset(parent, name), name), 1, name);
+  return row_count(open_dataset(parent, name), name);
 }
 
 template <typename T>

@@ -47,6 +47,7 @@ void read_rows(const DatasetHandle& column, const std::string& name, std::size_t
                                                       std::size_t first, std::size_t count);
 /// Number of rows of a column.
 [[nodiscard]] std::size_t row_count(hid_t parent, const std::string& name);
+[[nodiscard]] std::size_t row_count(const DatasetHandle& dataset, const std::string& name);
 /// Whether the stored type of a data set is T.
 template <typename T>
 [[nodiscard]] bool holds(hid_t parent, const std::string& name);

@@ -155,7 +155,7 @@ Verdict judge(const std::filesystem::path& path, const FileCalls& calls) {
   if (!is_journal) {
     if (const auto shared = given->share(); !shared) return cannot_look(shared.error().message);
   }
-  if (given->is_readable()) {
+  if (given->load()) {
     if (is_journal) {
       judge_journal(path, verdict);
     } else {

@@ -54,11 +54,12 @@ template <typename Row, typename Value>
 void read_member(hid_t group, const FieldName& name, Value Row::*member, std::size_t table_rows,
                  std::size_t first, std::vector<Row>& rows) {
   const std::string key{name.name};
-  const std::size_t count = row_count(group, key);
+  const DatasetHandle column = open_dataset(group, key);
+  const std::size_t count = row_count(column, key);
   if (count != table_rows) throw HdfError(fmt::format("{} has {} rows, not {}", key, count, table_rows));
   if (rows.empty()) return;
   std::vector<Value> values(rows.size());
-  read_rows<Value>(open_dataset(group, key), key, first, values);
+  read_rows<Value>(column, key, first, values);
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i].*member = values[i];
 }
 

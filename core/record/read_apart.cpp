@@ -122,41 +122,51 @@ Apart& apart() {
   return apart;
 }
 
-/// Of one thread: one reads the next record while the other's is worked on.
+/// Of one thread: while one record is worked on, both read those that will be asked for next.
 class PairOfReaders {
  public:
-  explicit PairOfReaders(std::string_view option) : readers_{reader(option), reader(option)} {}
+  explicit PairOfReaders(std::string_view option) : readings_{reading(option), reading(option)} {}
 
-  base::Result<Record> read(const std::filesystem::path& path, const std::filesystem::path& next) {
-    if (begun_ != path) {
-      if (auto begun = begin(path); !begun) return tl::unexpected(begun.error());
+  base::Result<Record> read(const std::string& path, std::span<const std::string> next) {
+    std::size_t own = readings_[0].path == path ? 0 : 1;
+    if (readings_[own].path != path) {
+      own = 0;
+      if (auto begun = begin(readings_[own], path); !begun) return tl::unexpected(begun.error());
     }
-    begun_.clear();
-    ApartReader& reader = readers_[current_];
-    if (!next.empty()) {
-      current_ = 1 - current_;
-      static_cast<void>(begin(next));  // What refuses it is told when it is asked for.
-    }
-    return reader.finish(apart().given_up);
+    Reading& other = readings_[1 - own];
+    if (!next.empty() && other.path != next[0]) try_begin(other, next[0]);
+    readings_[own].path.clear();
+    base::Result<Record> record = readings_[own].reader.finish(apart().given_up);
+    if (next.size() > 1) try_begin(readings_[own], next[1]);
+    return record;
   }
 
  private:
-  [[nodiscard]] base::Result<void> begin(const std::filesystem::path& path) {
+  struct Reading {
+    ApartReader reader;
+    std::string path;  ///< Of what it reads; empty: nothing.
+  };
+
+  [[nodiscard]] static base::Result<void> begin(Reading& reading, const std::string& path) {
+    reading.path.clear();
     // Told here, in the words of all files, and before a child is asked.
     const base::Result<base::RegularFile> file = base::open_regular(path);
     if (!file) return tl::unexpected(file.error());
-    auto begun = readers_[current_].begin(path, base::limits_for_file(file->size));
-    if (begun) begun_ = path;
+    auto begun = reading.reader.begin(path, base::limits_for_file(file->size));
+    if (begun) reading.path = path;
     return begun;
   }
 
-  static ApartReader reader(std::string_view option) {
-    return ApartReader{base::LimitedChild{base::ChildProgram{"/proc/self/exe", {std::string{option}}}}};
+  /// What refuses it is told when it is asked for.
+  static void try_begin(Reading& reading, const std::string& path) {
+    static_cast<void>(begin(reading, path));
   }
 
-  std::array<ApartReader, 2> readers_;
-  std::size_t current_ = 0;
-  std::filesystem::path begun_;  ///< What the current one reads; empty: nothing.
+  static Reading reading(std::string_view option) {
+    return {ApartReader{base::LimitedChild{base::ChildProgram{"/proc/self/exe", {std::string{option}}}}}, {}};
+  }
+
+  std::array<Reading, 2> readings_;
 };
 
 }  // namespace
@@ -195,6 +205,15 @@ base::Result<Record> ApartReader::finish(const std::function<bool()>& given_up) 
 
 namespace {
 
+Record without_scans(Record&& record) {
+  Record rest;
+  rest.header = std::move(record.header);
+  rest.end = std::move(record.end);
+  rest.cycles = std::move(record.cycles);
+  rest.sha256 = std::move(record.sha256);
+  return rest;
+}
+
 std::string answer_with(base::Result<Record> record, int memory_file) {
   if (!record) return letter_of(record.error().kind) + record.error().message;
   std::string answer = kRead + record->sha256;
@@ -209,6 +228,10 @@ std::string read_for_parent(std::string_view path, int memory_file) {
   return answer_with(read_record(path), memory_file);
 }
 
+std::string read_results_for_parent(std::string_view path, int memory_file) {
+  return answer_with(read_record(path).map(without_scans), memory_file);
+}
+
 std::string read_facts_for_parent(std::string_view path, int memory_file) {
   return answer_with(read_facts(path), memory_file);
 }
@@ -216,25 +239,32 @@ std::string read_facts_for_parent(std::string_view path, int memory_file) {
 void serve_if_reader(int count, char** arguments) {
   if (count != 2) return;
   if (arguments[1] == kReaderOption) base::answer_questions(read_for_parent);
+  if (arguments[1] == kResultsReaderOption) base::answer_questions(read_results_for_parent);
   if (arguments[1] == kFactsReaderOption) base::answer_questions(read_facts_for_parent);
 }
 
 void read_records_apart(std::function<bool()> given_up) { apart() = {true, std::move(given_up)}; }
 
-base::Result<Record> read_record_apart(const std::filesystem::path& path, const std::filesystem::path& next) {
+base::Result<Record> read_record_apart(const std::string& path, std::span<const std::string> next) {
   if (!apart().wanted) return read_record(path);
   thread_local PairOfReaders readers{kReaderOption};
   return readers.read(path, next);
 }
 
-base::Result<Record> read_facts_apart(const std::filesystem::path& path, const std::filesystem::path& next) {
+base::Result<Record> read_results_apart(const std::string& path, std::span<const std::string> next) {
+  if (!apart().wanted) return read_record(path).map(without_scans);
+  thread_local PairOfReaders readers{kResultsReaderOption};
+  return readers.read(path, next);
+}
+
+base::Result<Record> read_facts_apart(const std::string& path, std::span<const std::string> next) {
   if (!apart().wanted) return read_facts(path);
   thread_local PairOfReaders readers{kFactsReaderOption};
   return readers.read(path, next);
 }
 
 base::Result<Record> read_record_in_turn(std::span<const std::string> files, std::size_t index) {
-  return read_record_apart(files[index], index + 1 < files.size() ? files[index + 1] : std::string{});
+  return read_record_apart(files[index], files.subspan(index + 1));
 }
 
 }  // namespace stickslip::record

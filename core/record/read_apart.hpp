@@ -23,6 +23,7 @@ namespace stickslip::record {
 
 /// Of this program as such a child.
 inline constexpr std::string_view kReaderOption = "--read-files";
+inline constexpr std::string_view kResultsReaderOption = "--read-results";
 inline constexpr std::string_view kFactsReaderOption = "--read-facts";
 
 /// A child that reads one record after the other. Thread-bound.
@@ -48,6 +49,8 @@ class ApartReader {
 
 /// A ChildWork: reads the record of that path into the memory file, as a journal.
 [[nodiscard]] std::string read_for_parent(std::string_view path, int memory_file);
+/// The same without the columns of the scans, the gaps and the events.
+[[nodiscard]] std::string read_results_for_parent(std::string_view path, int memory_file);
 /// The same with read_facts().
 [[nodiscard]] std::string read_facts_for_parent(std::string_view path, int memory_file);
 
@@ -59,17 +62,20 @@ void serve_if_reader(int count, char** arguments);
 void read_records_apart(std::function<bool()> given_up = {});
 
 /// Of a file that somebody gives. Errors as ApartReader::read().
-/// \param next  will be asked for next: a second child reads it while this process works on `path`; empty:
-/// nobody knows.
-[[nodiscard]] base::Result<Record> read_record_apart(const std::filesystem::path& path,
-                                                     const std::filesystem::path& next = {});
+/// \param next  files that will be asked for next, in their order: the children read the first two while this
+/// process works on `path`.
+[[nodiscard]] base::Result<Record> read_record_apart(const std::string& path,
+                                                     std::span<const std::string> next = {});
 
-/// files[index], for those who read one after the other: the one after it is being read meanwhile.
-/// Errors as read_record_apart().
+/// files[index], for those who read one after the other. Errors as read_record_apart().
 [[nodiscard]] base::Result<Record> read_record_in_turn(std::span<const std::string> files, std::size_t index);
 
+/// As read_record_apart(), which looks at all of the file; of the columns only the cycles are handed over.
+[[nodiscard]] base::Result<Record> read_results_apart(const std::string& path,
+                                                      std::span<const std::string> next = {});
+
 /// As read_record_apart(), with read_facts().
-[[nodiscard]] base::Result<Record> read_facts_apart(const std::filesystem::path& path,
-                                                    const std::filesystem::path& next = {});
+[[nodiscard]] base::Result<Record> read_facts_apart(const std::string& path,
+                                                    std::span<const std::string> next = {});
 
 }  // namespace stickslip::record

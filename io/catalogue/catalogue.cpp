@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -108,11 +110,12 @@ class Follower {
  private:
   /// Files [first, end). Reading takes long, writing does not: other processes wait only for that.
   void read(const std::vector<Pending>& pending, std::size_t first, std::size_t end) {
+    std::vector<std::string> paths;
+    for (std::size_t i = first; i < end; ++i) paths.push_back((folder_ / pending[i].file).string());
     std::vector<base::Result<record::Record>> records;
     for (std::size_t i = first; i < end; ++i) {
       if (progress_) progress_(i, pending.size());
-      records.push_back(record::read_facts_apart(
-          folder_ / pending[i].file, i + 1 < pending.size() ? folder_ / pending[i + 1].file : fs::path{}));
+      records.push_back(record::read_facts_apart(paths[i - first], std::span{paths}.subspan(i - first + 1)));
     }
     Transaction transaction = index_.begin();
     for (std::size_t i = first; i < end; ++i) put(pending[i], records[i - first]);

@@ -49,6 +49,19 @@ TEST(Threshold, AgreesWithFiftyDigitsOverTheWholeDomain) {
   }
 }
 
+// Falls everywhere: no damping in between has no threshold, or that of another.
+TEST(Threshold, FallsWithTheDampingAtEachOfAMillionSteps) {
+  constexpr int kSteps = 1'000'000;
+  constexpr double kLargest = 1.0;
+  double before = Q_threshold(0.0);
+  for (int i = 1; i <= kSteps; ++i) {
+    const double gamma_over_2omega = kLargest * i / kSteps;
+    const double now = Q_threshold(gamma_over_2omega);
+    ASSERT_LT(now, before) << "at gamma/2omega = " << gamma_over_2omega;
+    before = now;
+  }
+}
+
 TEST(Threshold, EndsOfTheDomainAreDefined) {
   EXPECT_TRUE(std::isinf(Q_threshold(0.0)));
   EXPECT_DOUBLE_EQ(theta_threshold_rad(0.0), std::numbers::pi / 2.0);

@@ -55,7 +55,9 @@ inline std::vector<std::string> contradictions(const analysis::TestResults& resu
   // Regime, counts, and what the threshold allows [22]; slips scatter about the mean Q.
   const double all = results.cycle_count.value.value_or(0.0);
   const std::optional<double> captured = results.stick_cycle_count.value;
-  if (captured && (*captured > all || (results.regime == Regime::kRingDown && *captured > 0.0) ||
+  const bool never_rests =
+      results.regime == Regime::kRingDown || results.regime == Regime::kInertialOscillation;
+  if (captured && (*captured > all || (never_rests && *captured > 0.0) ||
                    (results.regime == Regime::kStickSlip && all > 2.0 && *captured < 0.5 * (all - 2.0)) ||
                    (results.regime == Regime::kMixed && (*captured == 0.0 || *captured == all))))
     note("regime and captured slips", *captured, all);
@@ -81,7 +83,8 @@ inline std::vector<std::string> contradictions(const analysis::TestResults& resu
   }
   // Without damping the half range is √(1 + Q²) (S − K), with damping less; at least half of it with e ≥ 0.
   if (planned_speed_m_per_s && D.value && results.amplitude.value && results.regime == Regime::kStickSlip) {
-    const double Q = results.Q.value.value_or(1.0);
+    // Where the speed changes it has no Q; stick-slip is below the threshold.
+    const double Q = results.Q.value.value_or(results.Q_threshold.value.value_or(1.0));
     const double most = std::hypot(1.0, Q) * (*D.value + error(D));
     const double least = 0.5 * (*D.value - error(D));
     const double half_range = *results.amplitude.value, own = error(results.amplitude);

@@ -144,6 +144,14 @@ class Reports(Folder):
                                for n, g in zip((3, 5), report["groups"])) / 6)
         self.assertAlmostEqual(report["pooled_standard_deviation"]["mu_s"], pooled, delta=1e-12)
 
+    def test_a_test_reads_the_same_alone_and_among_others(self):
+        alone = [json.loads(self.good("report", file, "--json"))["tests"][0] for file in (*self.a, *self.b)]
+        self.assertEqual(json.loads(self.good("report", *self.a, *self.b, "--json"))["tests"], alone)
+        thrice = json.loads(self.good("report", self.a[1], self.a[1], self.a[0], self.a[1], "--json"))["tests"]
+        self.assertEqual([test["file"] for test in thrice], [self.a[i] for i in (1, 1, 0, 1)])
+        for test, own in zip(thrice, (1, 1, 0, 1)):
+            self.assertEqual(test["delta_mu"], alone[own]["delta_mu"])
+
     def test_s_minus_k_by_cycle_is_the_mean_of_all_slips_but_the_first_of_each_test(self):
         report = json.loads(self.good("report", *self.a, "--json"))
         text = self.good("report", *self.a)
@@ -388,6 +396,7 @@ class Reports(Folder):
     def test_what_is_wrong_is_one_line_and_no_file_is_left(self):
         (self.folder / "junk.h5").write_text("junk")
         self.refused(2, "junk.h5: ", "report", self.a[0], "junk.h5", "-o", "r.html", "--csv", "r.csv")
+        self.refused(2, "junk.h5: ", "report", *self.a[:3], "junk.h5", *self.a[3:])
         self.refused(2, "none.h5: there is no such file", "compare", *self.a, "--", "none.h5")
         self.refused(2, "compare needs records on both sides", "compare", *self.a)
         self.refused(2, "compare needs records on both sides", "compare", "--", *self.a)

@@ -172,6 +172,28 @@ TEST(ReadApart, FactsAreThoseOfTheWholeRecord) {
   }
 }
 
+TEST(ReadApart, ResultsAreThoseOfTheWholeRecordWithoutItsScans) {
+  const test::TemporaryFolder folder;
+  const auto path = folder / "1.h5";
+  ASSERT_TRUE(publish_record(test::whole_record(), path));
+  Record expected = read_record(path).value();
+  expected.scan.clear();
+  expected.raw.clear();
+  expected.true_coefficient.clear();
+  expected.second.clear();
+  expected.spikes.clear();
+  expected.gaps.clear();
+  expected.anchors.clear();
+  expected.events.clear();
+  ASSERT_FALSE(expected.cycles.empty());
+  ApartReader reader{LimitedChild{read_results_for_parent}};
+  for (const auto& results : {read_results_apart(path), reader.read(path, kEnough)}) {
+    ASSERT_TRUE(results) << results.error().message;
+    test::expect_same_record(*results, expected);
+    EXPECT_EQ(results->sha256, expected.sha256);
+  }
+}
+
 TEST(ReadApart, InTurnGivesTheNamedFileOfAListUpToTheLast) {
   const test::TemporaryFolder folder;
   const std::array<std::string, 2> files{folder / "1.h5", folder / "2.h5"};
