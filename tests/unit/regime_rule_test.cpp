@@ -92,7 +92,32 @@ TEST(RegimeRule, WithoutAModelOneChangeOfBehaviourIsMixed) {
 }
 
 detect::RegimeVerdict by_shape(const detect::CycleShape& shape, Regime by_ends, bool model_describes) {
-  return detect::judge_by_shape(shape, {by_ends, "by ends", {}}, model_describes);
+  return detect::judge_by_shape(shape, {by_ends, "by ends", {}, 19, 7}, model_describes);
+}
+
+TEST(RegimeRule, TheSlipsThatStuckAreThoseOfTheRegime) {
+  const auto captured = [](const std::vector<double>& ratios, Description description) {
+    return detect::judge_regime(ratios.size() + 1, ratios, description).captured;
+  };
+  EXPECT_EQ(detect::judge_regime(0, {}, Description::kFits).captured, 0U);
+  EXPECT_EQ(captured({50.0, 0.0, 40.0}, Description::kFits), 2U);
+  EXPECT_EQ(captured({-50.0, -40.0, -30.0}, Description::kFits), 0U);
+  EXPECT_EQ(captured({50.0, -40.0, 30.0, -20.0, -20.0}, Description::kFits), 2U);
+  EXPECT_EQ(captured({50.0, -1.0}, Description::kFits), std::nullopt) << "undecided";
+  // One slip of another kind among many does not count, where each may be mistaken.
+  std::vector<double> ratios(30, -50.0);
+  ratios[12] = 50.0;
+  EXPECT_EQ(captured(ratios, Description::kRefuted), 0U);
+  for (double& ratio : ratios) ratio = -ratio;
+  EXPECT_EQ(captured(ratios, Description::kRefuted), 30U);
+  EXPECT_THAT(detect::judge_regime(31, ratios, Description::kRefuted).reason,
+              testing::HasSubstr("30 of 30 slips ended in sticking (taken one by one: 29)"));
+  std::fill(ratios.begin() + 20, ratios.end(), -50.0);
+  EXPECT_EQ(captured(ratios, Description::kRefuted), 20U) << "mixed: the odd one is among the captured";
+  // By the shape of the cycles.
+  EXPECT_EQ(by_shape({20, 1.02, 0.0}, Regime::kMixed, false).captured, 0U);
+  EXPECT_EQ(by_shape({20, 3.0, 0.0}, Regime::kRingDown, false).captured, std::nullopt);
+  EXPECT_EQ(by_shape({20, 3.0, 0.0}, Regime::kMixed, false).captured, 7U);
 }
 
 TEST(RegimeRule, RisesAsLongAsFallsAreASledThatNeverRests) {
