@@ -264,6 +264,10 @@ TestEstimates estimate_in_sections(const estimate::Trace& trace, const base::Lon
     if (sure <= 0.0) {
       whole.model_describes = false;
       no_model_results("the fit finds S below K", whole.results);
+    } else if (whole.captured > 0 && !(delta_mu.standard_error.value_or(0.0) < *delta_mu.value)) {
+      // A slip that sticks again drops by about S − K: turning points tell more.
+      whole.model_describes = false;
+      no_model_results("the fit does not tell S from K", whole.results);
     } else if (*delta_mu.value <= 0.0 ||
                (whole.captured == 0 && delta_mu.standard_error.value_or(0.0) >= 0.5 * bound)) {
       tell_bound(bound, whole.results);  // The amplitude of a ring-down tells more than its fit.

@@ -17,23 +17,31 @@ namespace stickslip::test {
 namespace {
 
 TEST(Consistency, NoNumberOfATestContradictsAnother) {
-  constexpr std::uint64_t kSeed = 7;
-  constexpr std::uint64_t kTests = 60;
+  struct Case {
+    std::uint64_t seed;
+    std::uint64_t test;
+  };
+  // The last two stuck, and their fits do not tell S from K.
+  std::vector<Case> cases;
+  for (std::uint64_t test = 0; test < 60; ++test) cases.push_back({7, test});
+  cases.insert(cases.end(), {{1, 2003}, {2, 1919}});
   const auto bases = scenes_with_one_pull(std::filesystem::path{STICKSLIP_SOURCE_DIR} / "config/scenes");
   ASSERT_TRUE(bases) << bases.error().message;
   sweep::SweepPlan plan;
-  for (std::uint64_t i = 0; i < kTests; ++i) {
-    plan.seeds.push_back(sim::stream_seed(kSeed, i));
+  for (const auto& [seed, test] : cases) {
+    plan.seeds.push_back(sim::stream_seed(seed, test));
     plan.points.push_back(random_scene(*bases, plan.seeds.back()));
   }
   std::vector<std::int64_t> numbers(plan.points.size());
   std::iota(numbers.begin(), numbers.end(), 0);
   const std::atomic<bool> stop{false};
   const auto take = [&](const record::SweepRun& run) -> base::Result<void> {
-    const sim::Scene& scene = plan.points[static_cast<std::size_t>(run.number)];
+    const auto number = static_cast<std::size_t>(run.number);
+    const sim::Scene& scene = plan.points[number];
     for (const auto& text : contradictions(run.results, sim::steady_pull_speed_m_per_s(scene)))
-      ADD_FAILURE() << "seed " << kSeed << ", test " << run.number << " of " << scene.name << ", "
-                    << model::name(run.results.regime) << " (" << run.results.regime_reason << "): " << text;
+      ADD_FAILURE() << "seed " << cases[number].seed << ", test " << cases[number].test << " of "
+                    << scene.name << ", " << model::name(run.results.regime) << " ("
+                    << run.results.regime_reason << "): " << text;
     return {};
   };
   const auto done = sweep::do_runs(plan, numbers, 2, stop, take);
