@@ -495,6 +495,9 @@ class LivePage(unittest.TestCase):
         page.press("Enter")
         page.until("document.querySelector('#plan [name=facts]').value === 'door=a=b'")
         self.assertEqual(daemon.ask("GET", "/v1/plan")[1]["facts"], {"lot": "7", "door": "a=b", "humidity": "50 %"})
+        if folder := os.environ.get("STICKSLIP_SCREENSHOTS"):
+            page.value("document.querySelector('#plan').scrollIntoView()")
+            page.screenshot(pathlib.Path(folder) / "plan.png")
         self.assertEqual(page.value("document.getElementById('planned').textContent"), "liner 42, 5.08 mm/s, Ada")
         self.assertEqual(page.value("document.querySelector('#plan [name=pull_speed]').value"), "5.08 mm/s")
         page.until("Scope.data.highest.slice(-50).every(force => force < 0.02)")  # A whole pull is to come.
