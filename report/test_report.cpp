@@ -87,7 +87,9 @@ base::Result<Material> read_material(std::string label, std::span<const std::str
                                     test.sample.grade,
                                     analysis::mean_stick_time_s(record->cycles, skipped.first_slip),
                                     budget_facts_of(record->header)};
-    measured.rests = analysis::group_by_rest(analysis::rested_slips(record->cycles), measured.results);
+    const std::vector<analysis::RestedSlip> rested = analysis::rested_slips(record->cycles);
+    measured.speed_changes = !rested.empty();
+    measured.rests = analysis::group_by_rest(rested, measured.results);
     material.measured.push_back(std::move(measured));
     material.tests.push_back(std::move(test));
   }

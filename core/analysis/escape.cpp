@@ -128,7 +128,9 @@ EscapeSpeeds escape_speeds(std::span<const EscapeTrial> trials, double scatter) 
   const double of_paper = std::sqrt(std::log1p(scatter * scatter));
   const auto total = [&](double paper) { return std::hypot(paper, gap_of(trials) / std::sqrt(12.0)); };
   const double sigma = total(of_paper);
-  if (!(sigma > 0.0)) {
+  // Critical speeds are found to 40 bits.
+  constexpr double kNoScatter = 1e-11;
+  if (!(sigma > kNoScatter)) {
     speeds.of_mean_paper = Estimate::none("slips at one speed ended in both ways without scatter");
     return speeds;
   }

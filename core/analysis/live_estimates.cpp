@@ -1,5 +1,6 @@
 #include "core/analysis/live_estimates.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/analysis/model_results.hpp"
@@ -20,6 +21,23 @@ detect::Cycle row_of(const estimate::Trace& trace, const detect::Fall& slip) {
   row.onset_time_s = row.capture_time_s = row.stick_time_s = row.slip_time_s = base::kNaN;
   row.delta_mu = row.delta_mu_standard_error = row.slip_speed_ratio = base::kNaN;
   return row;
+}
+
+/// How long the contact rested before slip i, which follows a hold. While it creeps the force falls on: the
+/// fall before it takes no longer than the one before that.
+double rest_of_hold_s(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
+                      std::size_t i, const detect::Cycle& row) {
+  const auto s = [&trace](double scan) { return estimate::time_at(trace, scan); };
+  const detect::Fall last = slips[i - 1];
+  double trough_s = s(last.trough_at);
+  double cycle_s = 0.0;
+  if (i > 1) {
+    const detect::Fall before = slips[i - 2];
+    trough_s = std::min(trough_s, s(last.peak_at) + s(before.trough_at) - s(before.peak_at));
+    cycle_s = s(last.peak_at) - s(before.peak_at);
+  }
+  const double onset_s = std::isfinite(row.onset_time_s) ? row.onset_time_s : row.peak_time_s;
+  return onset_s - rests_from_s(trace, slips[i], trough_s, cycle_s);
 }
 
 /// How it ended is not known.
@@ -95,6 +113,7 @@ TestEstimates estimates_from_live(const estimate::Trace& trace, const base::Long
     row.number = static_cast<std::int64_t>(i);
     row.flags &= detect::kCycleCaptured;
     if (i == 0 || is_held) row.flags |= detect::kCycleIsFirst;
+    if (is_held) row.stick_time_s = rest_of_hold_s(trace, slips, i, row);
     if (!trace.belt.is_constant()) {
       const double at_s = std::isfinite(row.onset_time_s) ? row.onset_time_s : row.peak_time_s;
       row.pull_speed_m_per_s = trace.belt.plan().speed_m_per_s(at_s - trace.belt.start_s());

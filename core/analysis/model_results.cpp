@@ -503,22 +503,6 @@ void model_results(std::span<const detect::Fall> slips, const SlipEstimates& est
   });
 }
 
-namespace {
-
-/// When the rest before slip i began, which follows a hold. How the slip before ended is not known: its
-/// trough is near its capture, unless the sled slid on until the belt stopped, for longer than two cycles.
-double rests_from_s(const estimate::Trace& trace, std::span<const detect::Fall> slips, std::size_t i,
-                    const model::SharedParameters& shared) {
-  const double trough_s = estimate::time_at(trace, trough_at(trace, slips[i - 1], shared));
-  const double stop_s = *trace.belt.held_from_s(pull_of(trace, slips[i]));
-  const double cycle_s =
-      i > 1 ? estimate::time_at(trace, slips[i - 1].peak_at) - estimate::time_at(trace, slips[i - 2].peak_at)
-            : 0.0;
-  return stop_s - trough_s <= 2.0 * cycle_s ? trough_s : std::max(stop_s, trough_s);
-}
-
-}  // namespace
-
 std::vector<detect::Cycle> cycle_table(const estimate::Trace& trace, std::span<const detect::Fall> slips,
                                        const SlipEstimates& estimates) {
   const estimate::SlipFit& fit = estimates.fit;
@@ -527,10 +511,14 @@ std::vector<detect::Cycle> cycle_table(const estimate::Trace& trace, std::span<c
   for (std::size_t i = 0; i < slips.size(); ++i) {
     const detect::Fall& slip = slips[i];
     const bool held = i > 0 && is_held_between(trace, slips[i - 1], slip);
-    if (held) last_capture_s = rests_from_s(trace, slips, i, fit.shared);
     detect::Cycle cycle;
     cycle.number = static_cast<std::int64_t>(i);
     cycle.peak_time_s = estimate::time_at(trace, slip.peak_at);
+    if (held) {
+      const double cycle_s = i > 1 ? cycles[i - 1].peak_time_s - cycles[i - 2].peak_time_s : 0.0;
+      const double trough_s = estimate::time_at(trace, trough_at(trace, slips[i - 1], fit.shared));
+      last_capture_s = rests_from_s(trace, slip, trough_s, cycle_s);
+    }
     const bool has_next =
         i + 1 < slips.size() && !estimate::is_broken(trace, slip.peak_at, slips[i + 1].peak_at);
     cycle.period_s =

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,8 +20,8 @@ namespace stickslip::analysis {
 struct RestedSlip {
   double pull_speed_m_per_s = 0.0;
   double stick_time_s = 0.0;
-  double delta_mu = 0.0;
-  double delta_mu_error = 0.0;
+  double delta_mu = 0.0;        ///< NaN if not estimated.
+  double delta_mu_error = 0.0;  ///< NaN without a fit.
   double peak = 0.0;
   double trough = 0.0;
   bool held = false;  ///< The belt stood still before it.
@@ -29,13 +30,14 @@ struct RestedSlip {
 struct RestGroup {
   double pull_speed_m_per_s = 0.0;  ///< Mean.
   double stick_time_s = 0.0;        ///< Geometric mean.
-  double delta_mu = 0.0;            ///< Mean.
+  double S = 0.0;                   ///< Mean.
   /// Of that mean by the scatter from slip to slip; of a single slip that scatter.
-  double delta_mu_error = 0.0;
-  /// Part of S − K by which that of all slips of the test may be off together, by omega, gamma and stick
-  /// rate.
-  double shared_part = 0.0;
-  double K = 0.0;        ///< Mean of the slips at this speed that follow no hold.
+  double S_error = 0.0;
+  /// Systematic part of S beyond that of the test's. Of a fit: omega, gamma and stick rate make each S − K
+  /// off by the same share. By turning points: by how much less it overshoots than the mean peak.
+  double S_systematic = 0.0;
+  std::optional<double>
+      K;  ///< Mean of the slips at this speed that follow no hold; absent if the test has none.
   double K_error = 0.0;  ///< Of that mean against those of other speeds.
   bool held = false;     ///< A single slip after a hold.
 };
@@ -46,9 +48,7 @@ template <typename Cycles>
   std::vector<RestedSlip> slips;
   for (std::size_t i = 0; i < cycles.size(); ++i) {
     const detect::Cycle& cycle = cycles[i];
-    if (!(cycle.pull_speed_m_per_s > 0.0) || !(cycle.stick_time_s > 0.0) || !std::isfinite(cycle.delta_mu) ||
-        !(cycle.delta_mu_standard_error > 0.0))
-      continue;
+    if (!(cycle.pull_speed_m_per_s > 0.0) || !(cycle.stick_time_s > 0.0)) continue;
     slips.push_back({cycle.pull_speed_m_per_s, cycle.stick_time_s, cycle.delta_mu,
                      cycle.delta_mu_standard_error, cycle.peak, cycle.trough,
                      (cycle.flags & detect::kCycleIsFirst) != 0});
@@ -60,8 +60,10 @@ template <typename Cycles>
 /// others are grouped by their speed: speeds that follow each other within kSameSpeed are one, unless they
 /// spread over more than twice that, as on a ramp; fewer than four slips make no group. Slips after a hold at
 /// a speed without a group are left out. K of a speed is the test's K and by how much the middles of the
-/// falls at this speed lie off the mean of all. \param results  of the test. \return empty where they have no
-/// K. Without a damping the typical one is taken.
+/// falls at this speed lie off the mean of all; without a damping the typical one is taken. S is K and the
+/// fitted S − K of the slips. By turning points it comes from the peaks, which overshoot it as the mean peak
+/// overshoots the test's S: a trough may be that of a slack coupling. Without a K all overshoot alike.
+/// \param results  of the test. \return empty where they have no S, and no K though they are fitted.
 [[nodiscard]] std::vector<RestGroup> group_by_rest(std::span<const RestedSlip> slips,
                                                    const TestResults& results);
 

@@ -80,6 +80,11 @@ bool is_held_between(const estimate::Trace& trace, const detect::Fall& before, c
                                     estimate::time_at(trace, after.peak_at));
 }
 
+double rests_from_s(const estimate::Trace& trace, const detect::Fall& slip, double trough_s, double cycle_s) {
+  const double stop_s = *trace.belt.held_from_s(pull_of(trace, slip));
+  return stop_s - trough_s <= 2.0 * cycle_s ? trough_s : std::max(stop_s, trough_s);
+}
+
 bool follows_a_break(const estimate::Trace& trace, std::span<const detect::Fall> slips, std::size_t i) {
   const double from = i > 0 ? slips[i - 1].peak_at : slips[i].peak_at - slips[i].rise_duration;
   return estimate::is_broken(trace, from, slips[i].peak_at);

@@ -21,6 +21,11 @@ namespace stickslip::analysis {
 /// Whether the belt stood still between two slips.
 [[nodiscard]] bool is_held_between(const estimate::Trace& trace, const detect::Fall& before,
                                    const detect::Fall& after);
+/// When the rest before a slip after a hold began. How the slip before ended is not known: its trough is near
+/// its capture, unless the sled slid on until the belt stopped, for longer than two cycles.
+/// \param trough_s  of the slip before. \param cycle_s  from the peak before that one's to its; 0: unknown.
+[[nodiscard]] double rests_from_s(const estimate::Trace& trace, const detect::Fall& slip, double trough_s,
+                                  double cycle_s);
 /// Whether a break lies between slip i − 1 and slip i, or in the rise to the first slip.
 [[nodiscard]] bool follows_a_break(const estimate::Trace& trace, std::span<const detect::Fall> slips,
                                    std::size_t i);

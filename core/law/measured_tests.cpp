@@ -30,7 +30,7 @@ std::string refusal(const MeasuredTest& test) {
     if (finding.severity == base::Severity::kFault || finding.code == repeated) return finding.text;
   }
   if (counts_by_rests(test)) return {};
-  if (test.results.Q.reason == analysis::kSpeedChanges)
+  if (test.speed_changes || test.results.Q.reason == analysis::kSpeedChanges)
     return std::string{analysis::kSpeedChanges} + ": S and K are means over many";
   if (!test.pull_speed_m_per_s || !(*test.pull_speed_m_per_s > 0.0)) return "the pull speed is not known";
   return {};
@@ -48,22 +48,18 @@ std::optional<Value> value_of(const Estimate& estimate, analysis::Rung rung) {
   return value;
 }
 
-/// \param test  with rests.
+/// \param test  with rests. What is off in its S or K is so in all of them.
 std::vector<LawTest> tests_of_rests(const MeasuredTest& test) {
-  const std::optional<Value> K = value_of(test.results.mu_k, test.results.rung);
-  const std::optional<Value> S = value_of(test.results.mu_s, test.results.rung);
-  const double delta_mu = test.results.delta_mu.value.value_or(0.0);
+  const double of_S = test.results.mu_s.systematic_uncertainty.value_or(0.0);
+  const double of_K = test.results.mu_k.systematic_uncertainty.value_or(0.0);
   std::vector<LawTest> tests;
   for (const analysis::RestGroup& group : test.rests) {
     LawTest own;
     own.pull_speed_m_per_s = group.pull_speed_m_per_s;
     own.stick_time_s = group.stick_time_s;
     own.held = group.held;
-    own.S = Value{group.K + group.delta_mu, std::max(group.delta_mu_error, kLeastError), 0.0};
-    // S comes from the peaks: where the fit makes the mean S - K too large, it makes K as much too small. An
-    // S whose S - K differs from the mean is off by that part of the difference, up or down.
-    own.S->systematic = (S ? S->systematic : 0.0) + group.shared_part * (group.delta_mu - delta_mu);
-    if (!group.held) own.K = Value{group.K, std::max(group.K_error, kLeastError), K->systematic};
+    own.S = Value{group.S, std::max(group.S_error, kLeastError), of_S + group.S_systematic};
+    if (!group.held && group.K) own.K = Value{*group.K, std::max(group.K_error, kLeastError), of_K};
     tests.push_back(own);
   }
   return tests;

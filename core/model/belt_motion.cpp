@@ -13,6 +13,7 @@ double first_time_s(double rate, double slope, double gain) noexcept {
   if (gain <= 0.0) return 0.0;
   const double discriminant = rate * rate + 2.0 * slope * gain;
   if (discriminant < 0.0) return kForEver;
+  if (rate < 0.0) return slope > 0.0 ? (std::sqrt(discriminant) - rate) / slope : kForEver;
   const double denominator = rate + std::sqrt(discriminant);
   return denominator > 0.0 ? 2.0 * gain / denominator : kForEver;
 }
@@ -46,13 +47,16 @@ BeltMotion::BeltMotion(PullSpeed plan, double start_s)
 
 double BeltMotion::climbing_time_s(double r, double from_s, double gain) const noexcept {
   if (!plan_) return gain / r;
-  for (double t_s = from_s - start_s_;;) {
-    const double time_s = t_s + start_s_;
+  // On the plan's own axis: one that was shifted and back may round to the piece before a corner.
+  const double begin_s = from_s - start_s_;
+  for (double t_s = begin_s;;) {
     const double until_s = plan_->steady_until_s(t_s);
-    const double needed_s = first_time_s(stick_rate(r, time_s), r * slope(time_s), gain);
-    if (t_s + needed_s <= until_s) return time_s + needed_s - from_s;
+    const double rate = r * scale_ * plan_->speed_m_per_s(t_s) - drift_rate_per_s_;
+    const double needed_s = first_time_s(rate, r * scale_ * plan_->acceleration_m_per_s2(t_s), gain);
+    if (t_s + needed_s <= until_s) return t_s - begin_s + needed_s;
     if (!std::isfinite(until_s)) return kForEver;
-    gain -= climb(r, time_s, until_s - t_s);
+    gain -=
+        r * scale_ * (plan_->travel_m(until_s) - plan_->travel_m(t_s)) - drift_rate_per_s_ * (until_s - t_s);
     t_s = until_s;
   }
 }

@@ -65,6 +65,11 @@ SlipWaveform dimensionless_slip(double Q, double t) noexcept {
   return {0.0, 1.0 / Q, 1.0, Oscillator::from_omega(1.0, t)};
 }
 
+/// Period of a cycle whose slip ends at capture_s: the slip, and the stick that climbs back to S.
+double phase_from(const SlipWaveform& slip, double capture_s) noexcept {
+  return capture_s + (slip.D - slip.value(capture_s));
+}
+
 }  // namespace
 
 std::optional<InvertedSpeed> Q_of_amplitude(double amplitude_over_belt, double gamma_over_2omega,
@@ -83,11 +88,13 @@ std::optional<InvertedSpeed> Q_of_slip_speed_ratio(double ratio, double gamma_ov
 
 std::optional<InvertedSpeed> Q_of_period(double period_phase, double gamma_over_2omega) noexcept {
   if (!in_domain(gamma_over_2omega)) return std::nullopt;
-  // At the threshold itself rounding decides whether the sled sticks.
+  // Near the threshold rounding decides whether the sled sticks; below it the sled does, at the latest where
+  // it comes nearest to the belt's speed.
   const double fastest = std::fmin(Q_threshold(gamma_over_2omega) * (1.0 - 1e-12), kFastest);
   return invert(
       [=](double Q) {
-        return period_phase_rad(Q, gamma_over_2omega).value_or(std::numeric_limits<double>::quiet_NaN());
+        const SlipWaveform slip = dimensionless_slip(Q, gamma_over_2omega);
+        return phase_from(slip, capture_time_s(slip, slip.r).value_or(slip.rise_end_time_s()));
       },
       period_phase, kSlowest, fastest);
 }
@@ -96,7 +103,7 @@ std::optional<double> period_phase_rad(double Q, double gamma_over_2omega) noexc
   const SlipWaveform slip = dimensionless_slip(Q, gamma_over_2omega);
   const auto capture = capture_time_s(slip, slip.r);
   if (!capture) return std::nullopt;
-  return *capture + (slip.D - slip.value(*capture));
+  return phase_from(slip, *capture);
 }
 
 std::optional<double> cycle_mean_excess(double Q, double gamma_over_2omega) noexcept {

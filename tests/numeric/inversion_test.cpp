@@ -47,6 +47,26 @@ TEST(Inversion, GivesBackTheSpeedUpToTheThreshold) {
   }
 }
 
+// Rounding decides at thresholds so high whether a slip there is captured: no period may have no answer by
+// that.
+TEST(Inversion, PeriodTellsQAtEveryLightDamping) {
+  for (int i = 0; i < 4000; ++i) {
+    const double t = std::pow(10.0, -13.0 + 11.0 * i / 4000.0);
+    for (const double Q : {0.1, 0.7, 3.0}) {
+      const auto period = period_phase_rad(Q, t);
+      ASSERT_TRUE(period) << Q << " " << t;
+      const auto found = Q_of_period(*period, t);
+      ASSERT_TRUE(found) << Q << " " << t;
+      ASSERT_NEAR(found->Q / Q, 1.0, 8.0 * tolerance(*found)) << Q << " " << t;
+    }
+    // Of the free oscillation's period, or one just above it, Q is at the threshold, or no number is given.
+    for (const double beyond : {0.0, 1e-15, 1e-12, 1e-9}) {
+      const auto found = Q_of_period(2.0 * std::numbers::pi * (1.0 + beyond), t);
+      ASSERT_TRUE(!found || found->Q > 1.0) << t << " " << found->Q;
+    }
+  }
+}
+
 // The last step of Newton's method, 1e-9 of ln Q, leaves that times the neighbour's distance. Where the
 // neighbour is too far, or there is no answer, it is as without one.
 TEST(Inversion, IsTheSameFromANeighbour) {

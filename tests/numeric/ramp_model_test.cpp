@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include "core/analysis/test_analysis.hpp"
@@ -126,6 +127,36 @@ TEST(BeltMotion, ClimbingTimeIsTheInverseOfTheClimb) {
   const BeltMotion stops{*PullSpeed::make({{0.0, 0.005}, {1.0, 0.005}, {1.0, 0.0}}), 0.0};
   EXPECT_TRUE(std::isinf(stops.climbing_time_s(8.0, 0.5, 4.1)));
   EXPECT_NEAR(stops.climbing_time_s(8.0, 0.5, 3.9), 3.9 / 8.0, 1e-13);
+}
+
+// Where the belt starts must not decide which side of a corner counts: start and corner are no round numbers.
+TEST(BeltMotion, ClimbingTimeIsThatBehindACorner) {
+  std::mt19937_64 random{20261128};
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>{low, high}(random);
+  };
+  for (int i = 0; i < 20'000; ++i) {
+    const double stop_s = uniform(0.5, 5.0);
+    const double go_s = stop_s + uniform(0.5, 3.0);
+    const double rest = i % 2 == 0 ? 0.0 : 0.002;
+    const double start_s = uniform(0.0, 10.0);
+    const BeltMotion belt{
+        *PullSpeed::make({{0.0, 0.01}, {stop_s, 0.01}, {stop_s, rest}, {go_s, rest}, {go_s, 0.01}}), start_s};
+    const double before_s = uniform(0.01, 0.4);
+    const double after_s = uniform(0.01, 2.0);
+    // r = 1: as high as the way in units of the full speed.
+    const double gain = before_s + rest / 0.01 * (go_s - stop_s) + after_s;
+    ASSERT_NEAR(belt.climbing_time_s(1.0, start_s + stop_s - before_s, gain),
+                before_s + (go_s - stop_s) + after_s, 1e-12)
+        << "start " << start_s << ", stop " << stop_s << ", go " << go_s;
+  }
+}
+
+TEST(BeltMotion, ClimbingTimeOfABeltThatFirstGoesDownLosesNoDigits) {
+  BeltMotion belt{*PullSpeed::make({{0.0, 0.0}, {10.0, 0.01}}), 0.0};
+  belt.take_off_drift(0.0696413);
+  // c = t²/20 − 0.0696413 t is above 1.45e-16 from t = 20 · 0.0696413 on, but for 1e-15 of it.
+  EXPECT_NEAR(belt.climbing_time_s(1.0, 0.0, 1.45e-16), 20.0 * 0.0696413, 1e-13);
 }
 
 TEST(RampFit, GivesBackTheTruthOfSimulatedRamps) {

@@ -27,6 +27,15 @@ TEST(Escape, WithoutScatterItIsBetweenTheTwoSpeeds) {
   EXPECT_LT(*speeds.of_mean_paper.standard_error, 0.0002);
 }
 
+TEST(Escape, OfSlipsThatDifferByRoundingAloneNoMeanIsTold) {
+  for (const double gap : {0.0, 1e-15, 1e-13, 3e-13}) {
+    const std::vector<EscapeTrial> trials{trial(0.005, true), trial(0.005 * (1.0 + gap), false)};
+    const EscapeSpeeds speeds = escape_speeds(trials, 0.0);
+    EXPECT_FALSE(speeds.of_mean_paper.value) << gap;
+    EXPECT_EQ(speeds.of_mean_paper.reason, "slips at one speed ended in both ways without scatter");
+  }
+}
+
 TEST(Escape, NeedsBothEnds) {
   const std::vector<EscapeTrial> all{trial(0.005, true), trial(0.0052, true)};
   EXPECT_NE(escape_speeds(all, 0.1).first_escape.reason.find("was not reached"), std::string::npos);

@@ -1,5 +1,6 @@
 #include "core/law/friction_law.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -479,11 +480,10 @@ TEST(LawTests, ATestThatChangesItsSpeedCountsByItsRests) {
   test.results.mu_k.systematic_uncertainty = 4e-4;
   test.results.mu_s = analysis::Estimate::of(0.38, 1e-4);
   test.results.mu_s.systematic_uncertainty = 4e-4;
-  test.results.delta_mu = analysis::Estimate::of(0.08, 8e-4);  // 1 % that all slips share
   const std::vector<analysis::MeasuredTest> ramp{test};
   ASSERT_EQ(tests_for_law(ramp).left_out.size(), 1U);
-  test.rests = {{0.001, 0.1, 0.08, 1e-4, 0.01, 0.30, 2e-4, false},
-                {0.001, 10.0, 0.12, 2e-3, 0.01, 0.30, 2e-4, true}};
+  test.rests = {{0.001, 0.1, 0.38, 1e-4, 0.0, 0.30, 2e-4, false},
+                {0.001, 10.0, 0.42, 2e-3, 4e-4, 0.30, 2e-4, true}};
   const LawTests found = tests_for_law(std::vector{test});
   ASSERT_EQ(found.tests.size(), 2U);
   EXPECT_EQ(found.measured, (std::vector<std::size_t>{0, 0}));
@@ -497,9 +497,16 @@ TEST(LawTests, ATestThatChangesItsSpeedCountsByItsRests) {
   EXPECT_FALSE(found.tests[1].K);
   EXPECT_NEAR(found.tests[1].S->value, 0.42, 1e-12);
   EXPECT_NEAR(found.tests[1].S->error, 2e-3, 1e-12);
-  // The 1 % that all slips share count as far as S - K differs from the mean one.
-  EXPECT_NEAR(found.tests[1].S->systematic, 4e-4 + 0.01 * 0.04, 1e-12);
-  test.rests.pop_back();
+  EXPECT_NEAR(found.tests[1].S->systematic, 8e-4, 1e-12);
+  test.rests[0].K.reset();  // A slack coupling tells none.
+  EXPECT_FALSE(tests_for_law(std::vector{test}).tests[0].K);
+  test.rests.clear();
+  test.results.Q = analysis::Estimate::none("no fit");
+  test.speed_changes = true;
+  EXPECT_THAT(tests_for_law(std::vector{test}).left_out[0].reason,
+              testing::StartsWith("the pull speed changes"));
+  test.rests = {{0.001, 0.1, 0.38, 1e-4, 0.0, 0.30, 2e-4, false}};
+  test.speed_changes = false;
   test.results.Q = analysis::Estimate::of(0.2);
   EXPECT_EQ(tests_for_law(std::vector{test}).tests.size(), 0U);  // One speed, and no pull speed.
 }

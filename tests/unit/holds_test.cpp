@@ -190,7 +190,9 @@ std::vector<RestedSlip> two_speeds() {
 
 TestResults results_with(double K) {
   TestResults results;
+  results.rung = Rung::kTwoParameterLaw;
   results.mu_k = Estimate::of(K, 0.0001);
+  results.delta_mu = Estimate::of(0.075, 0.0001);
   results.omega = Estimate::of(100.0, 0.1);
   results.gamma_over_2omega = Estimate::of(0.0, 0.001);
   return results;
@@ -201,18 +203,61 @@ TEST(RestGroups, AreTheSlipsOfASpeedAndEachSlipAfterAHold) {
   ASSERT_EQ(groups.size(), 3U);
   EXPECT_FALSE(groups[0].held);
   EXPECT_NEAR(groups[0].stick_time_s, 0.1, 1e-12);
-  EXPECT_NEAR(groups[0].delta_mu, 0.08, 1e-12);
-  EXPECT_NEAR(groups[0].delta_mu_error, 0.002 * std::sqrt(6.0 / 5.0) / std::sqrt(6.0), 1e-12);
   // Without damping K is the middle of a fall: 0.30 and 0.31 about their mean, the K of the test.
-  EXPECT_NEAR(groups[0].K, 0.30, 1e-12);
-  EXPECT_NEAR(groups[2].K, 0.31, 1e-12);
+  EXPECT_NEAR(*groups[0].K, 0.30, 1e-12);
+  EXPECT_NEAR(*groups[2].K, 0.31, 1e-12);
+  EXPECT_NEAR(groups[0].S, 0.30 + 0.08, 1e-12);
+  EXPECT_NEAR(groups[0].S_error, 0.002 * std::sqrt(6.0 / 5.0) / std::sqrt(6.0), 1e-12);
   EXPECT_TRUE(groups[1].held);
   EXPECT_EQ(groups[1].stick_time_s, 10.0);
-  EXPECT_EQ(groups[1].delta_mu, 0.12);
-  EXPECT_NEAR(groups[1].K, 0.30, 1e-12);
+  EXPECT_NEAR(groups[1].S, 0.30 + 0.12, 1e-12);
+  EXPECT_NEAR(*groups[1].K, 0.30, 1e-12);
   // A single slip scatters as those at its speed do.
-  EXPECT_NEAR(groups[1].delta_mu_error, 0.002 * std::sqrt(6.0 / 5.0), 1e-12);
-  EXPECT_NEAR(groups[0].shared_part, 0.001 / 0.08, 1e-12);
+  EXPECT_NEAR(groups[1].S_error, 0.002 * std::sqrt(6.0 / 5.0), 1e-12);
+  // The errors of single slips, 1/80 of their S - K, are one for all: they count where S - K differs from the
+  // test's.
+  EXPECT_NEAR(groups[0].S_systematic, 0.001 / 0.08 * (0.08 - 0.075), 1e-12);
+  EXPECT_NEAR(groups[1].S_systematic, 0.001 / 0.08 * (0.12 - 0.075), 1e-12);
+}
+
+TEST(RestGroups, ByTurningPointsHaveTheSOfTheirPeaks) {
+  std::vector<RestedSlip> slips = two_speeds();
+  for (RestedSlip& slip : slips) slip.delta_mu_error = std::nan("");
+  TestResults results = results_with(0.305);
+  EXPECT_TRUE(group_by_rest(slips, results).empty()) << "no fit that needs no error";
+  results.rung = Rung::kTurningPoints;
+  EXPECT_TRUE(group_by_rest(slips, results).empty()) << "no S of the test";
+  // At 0.001 m/s the force overshoots S − K, 0.06 and 0.13, by u = 0.03; four times as fast by four times as
+  // much.
+  const double u = 0.03;
+  const auto peak = [](double K, double delta_mu, double speed_u) {
+    return K + std::hypot(delta_mu, speed_u);
+  };
+  slips.clear();
+  for (int i = 0; i < 6; ++i)
+    slips.push_back({0.001, 0.1, 0.06, std::nan(""), peak(0.3, 0.06, u), 0.22, false});
+  slips.push_back({0.001, 10.0, std::nan(""), std::nan(""), peak(0.3, 0.13, u), 0.0, true});
+  results.mu_k = Estimate::of(0.3, 0.001);
+  results.mu_s = Estimate::of(0.36, 0.001);
+  std::vector<RestGroup> groups = group_by_rest(slips, results);
+  ASSERT_EQ(groups.size(), 2U);
+  EXPECT_NEAR(groups[0].S, 0.36, 1e-12);
+  EXPECT_TRUE(groups[1].held);
+  EXPECT_NEAR(groups[1].S, 0.43, 1e-12);
+  EXPECT_NEAR(groups[0].S_systematic, 0.0, 1e-12);
+  EXPECT_NEAR(groups[1].S_systematic, 0.07 - (std::hypot(0.13, u) - std::hypot(0.06, u)), 1e-12);
+  EXPECT_EQ(groups[0].K, 0.3);
+  // A single slip scatters as those at its speed do, a mean less.
+  for (std::size_t i = 0; i < 6; ++i) slips[i].peak += i % 2 == 0 ? 0.003 : -0.003;
+  groups = group_by_rest(slips, results);
+  EXPECT_NEAR(groups[0].S_error, 0.003 * std::sqrt(6.0 / 5.0) / std::sqrt(6.0), 1e-12);
+  EXPECT_NEAR(groups[1].S_error, 0.003 * std::sqrt(6.0 / 5.0), 1e-12);
+  // Without a K of the test S is told all the same: all peaks overshoot alike then.
+  results.mu_k = Estimate::none("slack");
+  groups = group_by_rest(slips, results);
+  EXPECT_FALSE(groups[1].K);
+  EXPECT_NEAR(groups[1].S, 0.36 + peak(0.3, 0.13, u) - peak(0.3, 0.06, u), 1e-12);
+  EXPECT_NEAR(groups[1].S_systematic, 0.0, 1e-12);
 }
 
 TEST(RestGroups, NeedFourSlipsAtASpeedAndAK) {
