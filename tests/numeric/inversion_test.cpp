@@ -51,7 +51,7 @@ TEST(Inversion, GivesBackTheSpeedUpToTheThreshold) {
 // that.
 TEST(Inversion, PeriodTellsQAtEveryLightDamping) {
   for (int i = 0; i < 4000; ++i) {
-    const double t = std::pow(10.0, -13.0 + 11.0 * i / 4000.0);
+    const double t = std::pow(10.0, -13.0 + 10.0 * i / 4000.0);
     for (const double Q : {0.1, 0.7, 3.0}) {
       const auto period = period_phase_rad(Q, t);
       ASSERT_TRUE(period) << Q << " " << t;
