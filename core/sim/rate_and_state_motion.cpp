@@ -99,7 +99,9 @@ bool RateAndStateMotion::becomes_taut(OdeState& y) {
   if (y[0] < 0.0) return false;
   const double rate = belt_.at(0.0);
   const double sliding = per_metre_ * sliding_speed_m_per_s(y);
-  if (std::abs(rate - sliding) > kSameSpeed * (std::abs(rate) + std::abs(sliding))) return rate > sliding;
+  const double still = kNoWay * omega0_rad_per_s_;
+  if (std::abs(rate - sliding) > std::max(still, kSameSpeed * (std::abs(rate) + std::abs(sliding))))
+    return rate > sliding;
   // Neither stretched nor stretching: the acceleration decides, and a way too short to matter keeps the
   // roundings of the speeds from being events.
   RateAndStateSystem::Piece piece;

@@ -4,11 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
+#include <random>
+#include <vector>
 
 #include "core/sim/cvode.hpp"
 #include "core/sim/numeric_solver.hpp"
 #include "core/sim/rate_and_state_system.hpp"
+#include "core/sim/scene.hpp"
+#include "core/sim/scene_run.hpp"
 #include "tests/numeric/constants.hpp"
 #include "tests/numeric/motion_recorder.hpp"
 
@@ -150,6 +155,35 @@ TEST(RateAndStateFriction, AContactThatHasNotRestedIsWeak) {
   EXPECT_LT(fresh, hundred_s);
   // Scans see the peak to 10 % of what the force rises in a scan, and the rise adds its own age.
   EXPECT_NEAR(thousand_s - hundred_s, 0.02 * std::numbers::ln10, 0.003);
+}
+
+// An unloaded sled on a belt at rest creeps by roundings: the coupling that is neither taut nor slack is no
+// event without end.
+TEST(RateAndStateFriction, AnUnloadedSledOnABeltAtRestGetsToItsPull) {
+  auto scene = sim::load_scene(std::filesystem::path{STICKSLIP_SOURCE_DIR} /
+                               "config/scenes/rate-and-state-ageing.toml");
+  ASSERT_TRUE(scene) << scene.error().message;
+  scene->constant_speed.reset();
+  scene->accuracy = 1e-5;
+  scene->duration_s = 1.0;
+  scene->piecewise_speed = sim::PiecewiseSpeed{{{0.5, 0.0}, {0.5, 0.00508}}};
+  std::vector<RateAndState> laws{
+      {Law::kAgeing, 0.0126409185, 0.0252933892, 1.12947928e-5, 1e-3, 0.299520942}};
+  std::mt19937_64 random{20261128};
+  std::uniform_real_distribution<double> fraction{0.0, 1.0};
+  for (int i = 0; i < 30; ++i) {
+    const double a = 0.004 + 0.016 * fraction(random);
+    laws.push_back({i % 2 == 0 ? Law::kAgeing : Law::kSlip, a, a * (1.6 + 2.0 * fraction(random)),
+                    1e-6 + 1e-5 * fraction(random), 1e-3, 0.3});
+  }
+  for (const RateAndState& law : laws) {
+    scene->rate_and_state = law;
+    for (const double rate_Hz : {350.0, 5600.0}) {
+      sim::SceneRun run{*scene, rate_Hz};
+      std::vector<double> raw(static_cast<std::size_t>(rate_Hz));
+      EXPECT_EQ(run.next(raw), raw.size());
+    }
+  }
 }
 
 RC_GTEST_PROP(RateAndStateProperty, TheJacobianIsThatOfTheRates, ()) {
