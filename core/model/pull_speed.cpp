@@ -37,8 +37,9 @@ PullSpeed::PullSpeed(std::vector<SpeedPoint> points) : points_(std::move(points)
     const bool last = i + 1 == points_.size();
     const double length_s = last ? kForEver : points_[i + 1].at_s - point.at_s;
     if (!(length_s > 0.0)) continue;
-    const double change = last ? 0.0 : points_[i + 1].speed_m_per_s - point.speed_m_per_s;
-    pieces_.push_back({point.at_s, point.speed_m_per_s, change / length_s, travel_m});
+    const double end_speed_m_per_s = last ? point.speed_m_per_s : points_[i + 1].speed_m_per_s;
+    const double change = end_speed_m_per_s - point.speed_m_per_s;
+    pieces_.push_back({point.at_s, point.speed_m_per_s, change / length_s, travel_m, end_speed_m_per_s});
     if (!last) travel_m += length_s * (point.speed_m_per_s + 0.5 * change);
   }
   find_pulls();
@@ -49,15 +50,13 @@ void PullSpeed::find_pulls() {
     const Piece& piece = pieces_[i];
     const double end_s = i + 1 < pieces_.size() ? pieces_[i + 1].start_s : kForEver;
     const double v = piece.speed_m_per_s;
-    const double a = piece.acceleration_m_per_s2;
-    const double zero_s = a != 0.0 ? piece.start_s - v / a : kForEver;
+    const double end_v = piece.end_speed_m_per_s;
+    if (v <= 0.0 && end_v <= 0.0) continue;
     Pull pull{piece.start_s, end_s};
-    if (v < 0.0 || (v == 0.0 && a <= 0.0)) {
-      if (!(a > 0.0)) continue;
-      pull.start_s = zero_s;
-    } else if (a < 0.0) {
-      pull.end_s = std::min(end_s, zero_s);
-    }
+    // A zero at an end of the piece is there to the last bit, and is not computed.
+    const double zero_s = piece.start_s - v / piece.acceleration_m_per_s2;
+    if (v < 0.0) pull.start_s = zero_s;
+    if (end_v < 0.0) pull.end_s = std::min(end_s, zero_s);
     if (!(pull.start_s < pull.end_s)) continue;
     if (!pulls_.empty() && pulls_.back().end_s == pull.start_s) {
       pulls_.back().end_s = pull.end_s;

@@ -69,7 +69,8 @@ class PullSpeed {
     double start_s;
     double speed_m_per_s;
     double acceleration_m_per_s2;
-    double travel_m;  ///< At its start.
+    double travel_m;           ///< At its start.
+    double end_speed_m_per_s;  ///< At its end.
   };
 
   explicit PullSpeed(std::vector<SpeedPoint> points);

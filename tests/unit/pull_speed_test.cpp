@@ -36,6 +36,25 @@ TEST(PullSpeed, PullsWhereItIsAboveZero) {
   EXPECT_TRUE(std::isinf(speed->pulls()[1].end_s));
 }
 
+// Where a line meets zero at its end no computed time may differ from that end.
+TEST(PullSpeed, AZeroAtAPointMakesNoPullOfItsOwn) {
+  EXPECT_FALSE(PullSpeed::make({{0.0, -0.318}, {29.93, 0.0}}));
+  for (int i = 1; i < 2000; ++i) {
+    const double at_s = 0.037 * i;
+    const double v = 0.0031 * (i % 97 + 1);
+    EXPECT_FALSE(PullSpeed::make({{0.0, -v}, {at_s, 0.0}}));
+    const auto back_rest_pull = PullSpeed::make({{0.0, -v}, {at_s, 0.0}, {at_s + 1.0, 0.0}, {at_s + 1.0, v}});
+    ASSERT_EQ(back_rest_pull->pulls().size(), 1U) << at_s << " " << v;
+    EXPECT_EQ(back_rest_pull->pulls().front().start_s, at_s + 1.0);
+    const auto touches = PullSpeed::make({{0.0, v}, {at_s, 0.0}, {2.0 * at_s, v}});
+    EXPECT_EQ(touches->pulls().size(), 1U) << at_s << " " << v;
+    const auto returns = PullSpeed::make({{0.0, v}, {at_s, -v}, {2.0 * at_s, -v}, {3.0 * at_s, v}});
+    ASSERT_EQ(returns->pulls().size(), 2U);
+    EXPECT_NEAR(returns->pulls()[0].end_s, 0.5 * at_s, 1e-12 * at_s);
+    EXPECT_NEAR(returns->pulls()[1].start_s, 2.5 * at_s, 1e-12 * at_s);
+  }
+}
+
 TEST(PullSpeed, TextComesBackToTheLastBit) {
   const auto speed = PullSpeed::make({{0.0, 0.1 / 3.0}, {1.0 / 7.0, 1e-300}, {2.0, 0.02}});
   ASSERT_TRUE(speed);
