@@ -88,7 +88,7 @@ base::Result<Material> read_material(std::string label, std::span<const std::str
                                     analysis::mean_stick_time_s(record->cycles, skipped.first_slip),
                                     budget_facts_of(record->header)};
     const std::vector<analysis::RestedSlip> rested = analysis::rested_slips(record->cycles);
-    measured.speed_changes = !rested.empty();
+    measured.speed_changes = !measured.results.Q.value && analysis::have_several_speeds(rested);
     measured.rests = analysis::group_by_rest(rested, measured.results);
     material.measured.push_back(std::move(measured));
     material.tests.push_back(std::move(test));

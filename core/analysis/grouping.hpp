@@ -40,7 +40,7 @@ struct MeasuredTest {
   std::optional<double> stick_time_s{};  ///< mean_stick_time_s() of its cycles.
   BudgetFacts budget_facts{};
   std::vector<RestGroup> rests{};  ///< group_by_rest() of its cycles; empty at one speed.
-  bool speed_changes = false;      ///< Its cycles have pull speeds of their own.
+  bool speed_changes = false;      ///< It has no Q, and its slips are at several pull speeds.
 };
 
 /// Reason why a test has no value of a quantity.

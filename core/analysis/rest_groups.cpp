@@ -40,7 +40,7 @@ class GroupsOfSpeed {
  public:
   GroupsOfSpeed(const SlipMeans& usual, const SlipMeans& all, const TestResults& results)
       : usual_(usual), all_(all), results_(results) {
-    if (results.mu_k.value && usual.level.count > 0.0)
+    if (results.mu_k.value && usual.level.count >= kFewestSlips)
       K_ = *results.mu_k.value + usual.level.mean - all.level.mean;
   }
 
@@ -98,6 +98,12 @@ class GroupsOfSpeed {
 
 }  // namespace
 
+bool have_several_speeds(std::span<const RestedSlip> slips) {
+  if (slips.empty()) return false;
+  const auto [slowest, fastest] = std::ranges::minmax_element(slips, {}, &RestedSlip::pull_speed_m_per_s);
+  return fastest->pull_speed_m_per_s > slowest->pull_speed_m_per_s * (1.0 + 2.0 * kSameSpeed);
+}
+
 std::vector<RestGroup> group_by_rest(std::span<const RestedSlip> slips, const TestResults& results) {
   const bool by_peaks = results.rung == Rung::kTurningPoints;
   if (!(by_peaks ? results.mu_s : results.mu_k).value) return {};
@@ -112,9 +118,10 @@ std::vector<RestGroup> group_by_rest(std::span<const RestedSlip> slips, const Te
   std::stable_sort(sorted.begin(), sorted.end(), [](const RestedSlip& one, const RestedSlip& other) {
     return one.pull_speed_m_per_s < other.pull_speed_m_per_s;
   });
+  // The same that make the test's S and K: slack ones only where it has no K.
   SlipMeans all;
   for (const RestedSlip& slip : sorted) {
-    if (!slip.held) all.add(slip, oscillator);
+    if (!slip.held && (!results.mu_k.value || std::isfinite(slip.delta_mu))) all.add(slip, oscillator);
   }
   std::vector<RestGroup> groups;
   for (auto first = sorted.begin(); first != sorted.end();) {

@@ -56,14 +56,18 @@ template <typename Cycles>
   return slips;
 }
 
+/// Whether the fastest pull is faster than the slowest by more than twice kSameSpeed.
+[[nodiscard]] bool have_several_speeds(std::span<const RestedSlip> slips);
+
 /// Each slip after a hold is a group of its own: it has its place on the paper and its time at rest. The
 /// others are grouped by their speed: speeds that follow each other within kSameSpeed are one, unless they
-/// spread over more than twice that, as on a ramp; fewer than four slips make no group. Slips after a hold at
-/// a speed without a group are left out. K of a speed is the test's K and by how much the middles of the
-/// falls at this speed lie off the mean of all; without a damping the typical one is taken. S is K and the
-/// fitted S − K of the slips. By turning points it comes from the peaks, which overshoot it as the mean peak
-/// overshoots the test's S: a trough may be that of a slack coupling. Without a K all overshoot alike.
-/// \param results  of the test. \return empty where they have no S, and no K though they are fitted.
+/// spread over more than twice that, as on a ramp; fewer than four slips make no group, and fewer than four
+/// of which none was slack no K. Slips after a hold at a speed without a group are left out. K of a speed is
+/// the test's K and by how much the middles of the falls at this speed lie off the mean of all; without a
+/// damping the typical one is taken. S is K and the fitted S − K of the slips. By turning points it comes
+/// from the peaks, which overshoot it as the mean peak overshoots the test's S: a trough may be that of a
+/// slack coupling. Without a K all overshoot alike. \param results  of the test. \return empty where they
+/// have no S, and no K though they are fitted.
 [[nodiscard]] std::vector<RestGroup> group_by_rest(std::span<const RestedSlip> slips,
                                                    const TestResults& results);
 

@@ -14,6 +14,7 @@
 #include "core/analysis/model_results.hpp"
 #include "core/analysis/slip_estimator.hpp"
 #include "core/base/nan.hpp"
+#include "core/detect/regime_rule.hpp"
 
 namespace stickslip::analysis {
 namespace {
@@ -208,6 +209,12 @@ class SectionFitter {
   Task next_;
 };
 
+/// Whether slips end in sticking in the likeliest course: a single odd one is outvoted.
+bool sticks(std::size_t slip_count, const base::LongColumn<double>& log_likelihood_ratios) {
+  return detect::judge_regime(slip_count, log_likelihood_ratios, detect::Description::kRefuted)
+             .captured.value_or(0) > 0;
+}
+
 }  // namespace
 
 TestEstimates estimate_in_sections(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
@@ -264,7 +271,8 @@ TestEstimates estimate_in_sections(const estimate::Trace& trace, const base::Lon
     if (sure <= 0.0) {
       whole.model_describes = false;
       no_model_results("the fit finds S below K", whole.results);
-    } else if (whole.captured > 0 && !(delta_mu.standard_error.value_or(0.0) < *delta_mu.value)) {
+    } else if (!(delta_mu.standard_error.value_or(0.0) < *delta_mu.value) &&
+               sticks(slips.size(), whole.log_likelihood_ratios)) {
       // A slip that sticks again drops by about S − K: turning points tell more.
       whole.model_describes = false;
       no_model_results("the fit does not tell S from K", whole.results);

@@ -90,7 +90,8 @@ void take_model_results(const TestResults& model, TestResults& results) {
   });
 }
 
-/// Of the regime: a test has no number where fewer than half of its slips tell how they ended.
+/// Of the regime: 0 where the sled never sticks; else a reason where fewer than half of the slips tell how
+/// they ended. The last one never does.
 Estimate stick_cycle_count(const detect::RegimeVerdict& verdict, std::size_t slip_count) {
   if (verdict.regime == model::Regime::kUndecided) return Estimate::none("undecided: " + verdict.reason);
   if (!verdict.captured) return Estimate::none("no fit tells which slips ended in sticking");

@@ -124,7 +124,7 @@ bool GivenFile::load() const {
   std::vector<std::byte> block(std::clamp<std::uint64_t>(size(), 1, kReadAtOnce));
   ssize_t got = 0;
   for (std::uint64_t at = 0; (got = read(block, at)) > 0; at += static_cast<std::uint64_t>(got)) {
-    if (static_cast<std::uint64_t>(got) == size()) {
+    if (at == 0 && static_cast<std::uint64_t>(got) == size()) {
       state_->kept = std::move(block);
       return true;
     }

@@ -130,7 +130,7 @@ class PairOfReaders {
   base::Result<Record> read(const std::string& path, std::span<const std::string> next) {
     std::size_t own = readings_[0].path == path ? 0 : 1;
     if (readings_[own].path != path) {
-      own = 0;
+      own = !next.empty() && readings_[0].path == next[0] ? 1 : 0;
       if (auto begun = begin(readings_[own], path); !begun) return tl::unexpected(begun.error());
     }
     Reading& other = readings_[1 - own];
@@ -148,10 +148,10 @@ class PairOfReaders {
   };
 
   [[nodiscard]] static base::Result<void> begin(Reading& reading, const std::string& path) {
-    reading.path.clear();
     // Told here, in the words of all files, and before a child is asked.
     const base::Result<base::RegularFile> file = base::open_regular(path);
     if (!file) return tl::unexpected(file.error());
+    reading.path.clear();
     auto begun = reading.reader.begin(path, base::limits_for_file(file->size));
     if (begun) reading.path = path;
     return begun;

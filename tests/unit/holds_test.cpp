@@ -260,6 +260,36 @@ TEST(RestGroups, ByTurningPointsHaveTheSOfTheirPeaks) {
   EXPECT_NEAR(groups[1].S_systematic, 0.0, 1e-12);
 }
 
+TEST(RestGroups, OfPartlySlackSpeedsHaveTheirKFromFourSlipsThatWereNot) {
+  std::vector<RestedSlip> slips;
+  for (int i = 0; i < 6; ++i) {
+    slips.push_back({0.001, 0.1, 0.08, std::nan(""), 0.38, 0.22, false});
+    // All but three went slack: their peaks are others, and their troughs tell no K.
+    const bool slack = i >= 3;
+    slips.push_back({0.004, 0.03, slack ? std::nan("") : 0.08, std::nan(""), slack ? 0.44 : 0.38,
+                     slack ? 0.0 : 0.22, false});
+  }
+  TestResults results = results_with(0.3);
+  results.rung = Rung::kTurningPoints;
+  results.mu_s =
+      Estimate::of(0.38, 0.001);  // Of the slips that were not slack, whose peaks do not overshoot.
+  const std::vector<RestGroup> groups = group_by_rest(slips, results);
+  ASSERT_EQ(groups.size(), 2U);
+  EXPECT_NEAR(groups[0].S, 0.38, 1e-12);
+  EXPECT_NEAR(*groups[0].K, 0.3, 1e-12);
+  EXPECT_FALSE(groups[1].K);
+  EXPECT_NEAR(groups[1].S, 0.41, 1e-12);
+}
+
+TEST(RestGroups, TellWhetherThereAreSeveralSpeeds) {
+  EXPECT_FALSE(have_several_speeds({}));
+  std::vector<RestedSlip> slips{{0.001, 0.1, 0.08, 0.001, 0.38, 0.22, false},
+                                {0.001 * 1.005, 0.1, 0.08, 0.001, 0.38, 0.22, false}};
+  EXPECT_FALSE(have_several_speeds(slips)) << "as an encoder reads one";
+  slips.push_back({0.002, 0.1, 0.08, 0.001, 0.38, 0.22, false});
+  EXPECT_TRUE(have_several_speeds(slips));
+}
+
 TEST(RestGroups, NeedFourSlipsAtASpeedAndAK) {
   std::vector<RestedSlip> slips = two_speeds();
   EXPECT_TRUE(group_by_rest(slips, TestResults{}).empty());
