@@ -79,9 +79,9 @@ class GroupsOfSpeed {
     group.S_systematic = share * (delta_mu - results_.delta_mu.value.value_or(usual_.delta_mu.mean));
   }
 
-  /// The force rises beyond S until the sled is as fast as the belt: the peak is K + √((S − K)² + u²), where
-  /// u grows with the pull speed [Penner 1995, (1)]. The mean peak over the test's S tells u. Without a K all
-  /// peaks overshoot alike.
+  /// For tests with a K. The force rises beyond S until the sled is as fast as the belt: the peak is
+  /// K + √((S − K)² + u²), where u grows with the pull speed [Penner 1995, (1)]. The mean peak over the
+  /// test's S tells u.
   [[nodiscard]] double S_of_peak(double peak) const {
     const auto square = [](double value) { return value * value; };
     const double K = *results_.mu_k.value;

@@ -48,8 +48,8 @@ Threshold lightly_damped(double t) {
     return t * (2.0 * pi - 2.0 * phi - y) + std::log1p(-(2.0 * half_sine * half_sine + t * std::sin(y)));
   };
   // At 0 it is positive. −log1p(−u) ≥ u ≥ 2 sin²(y/2) ≥ 2 y²/π² on (0, π/2), so it is negative where
-  // that exceeds 2π tan φ; and just below π/2 − φ, where the sine is 0 and its logarithm no number: −13 there
-  // outweighs 2π kStrongDamping.
+  // that exceeds 2π tan φ. Just below π/2 − φ, where the logarithm's argument becomes 0, it is negative, too:
+  // ln 1e-6 ≈ −13 outweighs 2π kStrongDamping.
   constexpr double kJustBelow = 1.0 - 1e-6;
   const double beyond = std::fmin(pi * std::sqrt(pi * t), kJustBelow * std::atan2(1.0, t));
   const double y = root_between(excess, 0.0, beyond);
