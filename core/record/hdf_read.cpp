@@ -65,8 +65,7 @@ std::vector<std::string> texts_in(const std::string& all, std::size_t width) {
   return texts;
 }
 
-std::vector<std::string> texts_of(hid_t parent, const std::string& name, int dimensions) {
-  const DatasetHandle dataset = open_dataset(parent, name);
+std::vector<std::string> texts_of(const DatasetHandle& dataset, const std::string& name, int dimensions) {
   const TypeHandle type = type_of(dataset, name);
   const std::size_t count = count_in(space_of(dataset, name), dimensions, name);
   const std::size_t width = text_width(type, count, name);
@@ -160,10 +159,16 @@ DatasetHandle open_dataset(hid_t parent, const std::string& name) {
   return {dataset, name};
 }
 
-std::string read_text(hid_t parent, const std::string& name) { return texts_of(parent, name, 0).front(); }
+std::string read_text(const DatasetHandle& dataset, const std::string& name) {
+  return texts_of(dataset, name, 0).front();
+}
+
+std::string read_text(hid_t parent, const std::string& name) {
+  return read_text(open_dataset(parent, name), name);
+}
 
 std::vector<std::string> read_texts(hid_t parent, const std::string& name) {
-  return texts_of(parent, name, 1);
+  return texts_of(open_dataset(parent, name), name, 1);
 }
 
 template <typename T>

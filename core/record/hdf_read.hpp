@@ -29,6 +29,7 @@ template <typename T>
 [[nodiscard]] DatasetHandle open_dataset(hid_t parent, const std::string& name);
 
 [[nodiscard]] std::string read_text(hid_t parent, const std::string& name);
+[[nodiscard]] std::string read_text(const DatasetHandle& dataset, const std::string& name);
 [[nodiscard]] std::vector<std::string> read_texts(hid_t parent, const std::string& name);
 template <typename T>
 [[nodiscard]] T read_scalar(hid_t parent, const std::string& name);

@@ -53,6 +53,7 @@ void verify_second(hid_t entry, const Record& record, const ScanSource& scans);
 
 void write_tables(hid_t entry, const Record& record);  ///< cycles, gaps, events
 void read_tables(hid_t entry, Record& record);
+void read_cycles(hid_t entry, Record& record);  ///< The part of read_tables() without gaps and events.
 /// Throws unless they could be read.
 void check_tables(hid_t entry);
 
@@ -72,6 +73,7 @@ void read_process(hid_t entry, Record& record);
 /// Expects the raw data to be written.
 void write_truth(hid_t entry, const model::TestTruth& truth, const ScanSource& scans);
 [[nodiscard]] model::TestTruth read_truth(hid_t entry);
+[[nodiscard]] model::TestTruth read_truth_facts(hid_t entry);  ///< The same without cycles and modes.
 /// Throws unless it could be read.
 void check_truth(hid_t entry);
 /// The noise-free force; empty if the record has none.

@@ -53,6 +53,7 @@ analysis::Estimate read_estimate(hid_t group, const std::string& key) {
   }
   estimate.standard_error = find_number_attribute<double>(dataset.get(), kStandardError);
   estimate.systematic_uncertainty = find_number_attribute<double>(dataset.get(), kSystematic);
+  if (!estimate.systematic_uncertainty) return estimate;
   for_each_part(estimate.systematic_parts,
                 [&](analysis::UncertaintySource source, std::optional<double>& size) {
                   size = find_number_attribute<double>(dataset.get(), part_attribute(source));
@@ -66,11 +67,12 @@ void read_rung(hid_t group, analysis::TestResults& results) {
     results.rung_reason = kNoSuchResultThen;
     return;
   }
-  const std::string rung = read_text(group, kRung);
+  const DatasetHandle dataset = open_dataset(group, kRung);
+  const std::string rung = read_text(dataset, kRung);
   const auto known = analysis::rung_from_name(rung);
   if (!known) throw HdfError(fmt::format("results/rung '{}' is unknown", rung));
   results.rung = *known;
-  results.rung_reason = read_attribute(open_dataset(group, kRung).get(), kReason);
+  results.rung_reason = read_attribute(dataset.get(), kReason);
 }
 
 /// A row for each sentence in results/findings.
@@ -150,11 +152,12 @@ analysis::TestResults read_results(hid_t entry) {
   if (!has(entry, "results")) return absent_results("the record holds no results");
   const GroupHandle group = open_group(entry, "results");
   analysis::TestResults results;
-  const std::string regime = read_text(group.get(), "regime");
+  const DatasetHandle dataset = open_dataset(group.get(), "regime");
+  const std::string regime = read_text(dataset, "regime");
   const auto known = model::regime_from_name(regime);
   if (!known) throw HdfError(fmt::format("results/regime '{}' is unknown", regime));
   results.regime = *known;
-  results.regime_reason = read_attribute(open_dataset(group.get(), "regime").get(), kReason);
+  results.regime_reason = read_attribute(dataset.get(), kReason);
   read_rung(group.get(), results);
   // Versions 1 and 2 have the diagnostics among the other results.
   std::optional<GroupHandle> diagnostics;

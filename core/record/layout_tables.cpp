@@ -119,9 +119,13 @@ void write_tables(hid_t entry, const Record& record) {
   write_events(entry, record.events);
 }
 
-void read_tables(hid_t entry, Record& record) {
+void read_cycles(hid_t entry, Record& record) {
   record.cycles.clear();
   for_each_cycle(entry, [&](const detect::Cycle& cycle) { record.cycles.push_back(cycle); });
+}
+
+void read_tables(hid_t entry, Record& record) {
+  read_cycles(entry, record);
   record.gaps = read_gaps(entry);
   record.events = read_events(entry);
 }

@@ -79,8 +79,7 @@ void for_each_true_cycle(hid_t truth, const Use& use) {
       use);
 }
 
-/// All but the tables.
-model::TestTruth read_facts(hid_t group) {
+model::TestTruth facts_in(hid_t group) {
   model::TestTruth truth;
   for_each_field(truth, FieldReader{group});
   const std::string regime = read_text(group, "regime");
@@ -121,9 +120,11 @@ void write_truth(hid_t entry, const model::TestTruth& truth, const ScanSource& s
   });
 }
 
+model::TestTruth read_truth_facts(hid_t entry) { return facts_in(open_group(entry, "truth").get()); }
+
 model::TestTruth read_truth(hid_t entry) {
   const GroupHandle group = open_group(entry, "truth");
-  model::TestTruth truth = read_facts(group.get());
+  model::TestTruth truth = facts_in(group.get());
   for_each_mode(group.get(), [&](const model::ModeInterval& mode) { truth.modes.push_back(mode); });
   for_each_true_cycle(group.get(), [&](const model::TrueCycle& cycle) { truth.cycles.push_back(cycle); });
   return truth;
@@ -131,7 +132,7 @@ model::TestTruth read_truth(hid_t entry) {
 
 void check_truth(hid_t entry) {
   const GroupHandle group = open_group(entry, "truth");
-  static_cast<void>(read_facts(group.get()));
+  static_cast<void>(facts_in(group.get()));
   for_each_mode(group.get(), [](const model::ModeInterval&) {});
   for_each_true_cycle(group.get(), [](const model::TrueCycle&) {});
 }

@@ -205,15 +205,6 @@ base::Result<Record> ApartReader::finish(const std::function<bool()>& given_up) 
 
 namespace {
 
-Record without_scans(Record&& record) {
-  Record rest;
-  rest.header = std::move(record.header);
-  rest.end = std::move(record.end);
-  rest.cycles = std::move(record.cycles);
-  rest.sha256 = std::move(record.sha256);
-  return rest;
-}
-
 std::string answer_with(base::Result<Record> record, int memory_file) {
   if (!record) return letter_of(record.error().kind) + record.error().message;
   std::string answer = kRead + record->sha256;
@@ -229,7 +220,7 @@ std::string read_for_parent(std::string_view path, int memory_file) {
 }
 
 std::string read_results_for_parent(std::string_view path, int memory_file) {
-  return answer_with(read_record(path).map(without_scans), memory_file);
+  return answer_with(read_without_scans(path), memory_file);
 }
 
 std::string read_facts_for_parent(std::string_view path, int memory_file) {
@@ -252,7 +243,7 @@ base::Result<Record> read_record_apart(const std::string& path, std::span<const 
 }
 
 base::Result<Record> read_results_apart(const std::string& path, std::span<const std::string> next) {
-  if (!apart().wanted) return read_record(path).map(without_scans);
+  if (!apart().wanted) return read_without_scans(path);
   thread_local PairOfReaders readers{kResultsReaderOption};
   return readers.read(path, next);
 }

@@ -49,7 +49,7 @@ class ApartReader {
 
 /// A ChildWork: reads the record of that path into the memory file, as a journal.
 [[nodiscard]] std::string read_for_parent(std::string_view path, int memory_file);
-/// The same without the columns of the scans, the gaps and the events.
+/// The same with read_without_scans().
 [[nodiscard]] std::string read_results_for_parent(std::string_view path, int memory_file);
 /// The same with read_facts().
 [[nodiscard]] std::string read_facts_for_parent(std::string_view path, int memory_file);
@@ -70,7 +70,7 @@ void read_records_apart(std::function<bool()> given_up = {});
 /// files[index], for those who read one after the other. Errors as read_record_apart().
 [[nodiscard]] base::Result<Record> read_record_in_turn(std::span<const std::string> files, std::size_t index);
 
-/// As read_record_apart(), which looks at all of the file; of the columns only the cycles are handed over.
+/// As read_record_apart(), with read_without_scans().
 [[nodiscard]] base::Result<Record> read_results_apart(const std::string& path,
                                                       std::span<const std::string> next = {});
 

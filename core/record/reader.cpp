@@ -72,25 +72,34 @@ Record read_facts_of(const GivenFile& given, const std::filesystem::path& path) 
   return facts_in(open_group(file.get(), "entry").get());
 }
 
-Record read(const GivenFile& given, const std::filesystem::path& path) {
+Record read_whole(const GivenFile& given, const std::filesystem::path& path) {
   const FileHandle file = open_record(given, path);
   check_format(file);
   const GroupHandle entry = open_group(file.get(), "entry");
-  Record record;
-  record.end.emplace();
+  Record record = facts_in(entry.get());
   read_raw(entry.get(), record);
-  read_identity(entry.get(), record);
-  read_instrument(entry.get(), record);
-  read_second_channel(entry.get(), record);
   read_second(entry.get(), record);
   read_tables(entry.get(), record);
-  record.end->results = read_results(entry.get());
-  read_process(entry.get(), record);
   if (has(entry.get(), "truth")) {
     record.end->truth = read_truth(entry.get());
     record.true_coefficient = read_true_coefficient(entry.get(), record.scan.size());
   }
   check_facts(record);
+  return record;
+}
+
+Record read_shortened(const GivenFile& given, const std::filesystem::path& path) {
+  const FileHandle file = open_record(given, path);
+  check_format(file);
+  const GroupHandle entry = open_group(file.get(), "entry");
+  Record record = facts_in(entry.get());
+  read_raw(entry.get(), record);
+  check_facts(record);
+  record.scan.clear();
+  record.raw.clear();
+  record.spikes.clear();
+  read_cycles(entry.get(), record);
+  if (has(entry.get(), "truth")) record.end->truth = read_truth_facts(entry.get());
   return record;
 }
 
@@ -128,7 +137,11 @@ base::Result<Record> read_by(Record (*read)(const GivenFile&, const std::filesys
 }  // namespace
 
 base::Result<Record> read_record(const std::filesystem::path& path, const FileCalls& calls) {
-  return read_by(read, path, calls);
+  return read_by(read_whole, path, calls);
+}
+
+base::Result<Record> read_without_scans(const std::filesystem::path& path, const FileCalls& calls) {
+  return read_by(read_shortened, path, calls);
 }
 
 base::Result<Record> read_facts(const std::filesystem::path& path, const FileCalls& calls) {

@@ -19,6 +19,12 @@ namespace stickslip::record {
 [[nodiscard]] base::Result<Record> read_record(const std::filesystem::path& path,
                                                const FileCalls& calls = system_calls());
 
+/// Reads a record whose scans (with what stands beside them: second channel, spikes, noise-free force), gaps,
+/// events, and cycles and modes of the truth stay empty. The raw values are compared with their checksum.
+/// Errors as read_record().
+[[nodiscard]] base::Result<Record> read_without_scans(const std::filesystem::path& path,
+                                                      const FileCalls& calls = system_calls());
+
 /// Reads a record without its columns: scans, cycles, gaps, events and truth stay empty. The raw values are
 /// not looked at, so neither is their checksum. Errors as read_record().
 [[nodiscard]] base::Result<Record> read_facts(const std::filesystem::path& path,

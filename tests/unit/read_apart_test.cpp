@@ -181,7 +181,8 @@ TEST(ReadApart, ResultsAreThoseOfTheWholeRecordWithoutItsScans) {
   const auto path = folder / "1.h5";
   ASSERT_TRUE(publish_record(test::whole_record(), path));
   Record expected = without_scans(read_record(path).value());
-  expected.anchors.clear();
+  expected.end->truth->modes.clear();
+  expected.end->truth->cycles.clear();
   ASSERT_FALSE(expected.cycles.empty());
   ApartReader reader{LimitedChild{read_results_for_parent}};
   for (const auto& results : {read_results_apart(path), reader.read(path, kEnough)}) {
