@@ -56,8 +56,8 @@ struct TestTruth {
   std::string scene_name;
   std::string scene_text;  ///< Complete text of the scene file.
   std::uint64_t seed = 0;
-  double mu_s = 0.0;
-  double mu_k = 0.0;
+  double mu_s = 0.0;  ///< Mean over the slips of the pull, without the first where there are more.
+  double mu_k = 0.0;  ///< The same, at the speed of the pull.
   double omega_rad_per_s = 0.0;
   double gamma_over_2omega = 0.0;
   double pull_speed_m_per_s = 0.0;

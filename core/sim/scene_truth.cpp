@@ -1,6 +1,7 @@
 #include "core/sim/scene_truth.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -127,6 +128,28 @@ Regime regime_of(const Tally& slips, bool oscillates) {
   return Regime::kUndecided;
 }
 
+/// S and K as the results mean them: averaged over the slips of the pull, without the first, which follows
+/// another rest, where there are more; K where the sled slides at the belt's speed.
+void describe_paper(const Motion& motion, const Chronicle& chronicle, double pull_end_s,
+                    model::TestTruth& truth) {
+  double slips = -1.0;  // The first is no part of the mean.
+  Coefficients mean{motion.mu_s, motion.mu_k};
+  for (const Chronicle::Slip& slip : chronicle.slips()) {
+    if (slip.onset_s >= pull_end_s) break;
+    const double share = 1.0 / std::max(1.0, ++slips);
+    mean.mu_s += share * (slip.paper.mu_s - mean.mu_s);
+    mean.mu_k += share * (slip.paper.mu_k - mean.mu_k);
+  }
+  truth.mu_s = mean.mu_s;
+  truth.mu_k = mean.mu_k;
+  if (!motion.velocity_dependence) return;
+  const VelocityDependence& law = *motion.velocity_dependence;
+  const double speed_m_per_s = truth.pull_speed_m_per_s;
+  truth.mu_k += law.per_speed_s_per_m * speed_m_per_s +
+                std::min(law.stribeck_rise, mean.mu_s - mean.mu_k) *
+                    std::exp(-std::pow(speed_m_per_s / law.stribeck_speed_m_per_s, law.stribeck_exponent));
+}
+
 void describe_oscillation(const Scene& scene, const Tally& slips, model::TestTruth& truth) {
   if (slips.count == 0 || !scene.oscillator.oscillates()) return;
   if (slips.count > 1) {
@@ -194,6 +217,7 @@ model::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std::ui
     // Where the speed changes, that at which the first slip begins.
     truth.pull_speed_m_per_s = slips.count == 0 ? steady_pull_speed_m_per_s(scene).value_or(0.0)
                                                 : belt_speed_m_per_s(scene_motion.belt, slips.first.onset_s);
+    describe_paper(scene_motion, chronicle, pull->end_s, truth);
     truth.regime = regime_of(slips, scene.oscillator.oscillates());
     describe_oscillation(scene, slips, truth);
     if (truth.amplitude && !has_closed_form(motion_of(scene))) {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -87,6 +89,38 @@ TEST(SceneLaws, RateAndStateHasATruth) {
   ASSERT_TRUE(truth.amplitude && truth.oscillation_frequency_Hz);
   EXPECT_GT(*truth.amplitude, truth.cycles[0].mu_s - truth.cycles[0].mu_k);
   EXPECT_NEAR(*truth.oscillation_frequency_Hz, 14.0, 6.0);
+}
+
+// What the results are compared with: a contact that has rested as long as those of the test, a sled that
+// slides at its speed.
+TEST(SceneLaws, TruthIsTheMeanOfTheSlipsBehindTheFirst) {
+  for (const std::string law : {"[effects.contact_ageing]\nper_decade = 0.02\n",
+                                "[effects.kinetic_drift]\nchange = -0.1\nover = \"1 s\"\n"}) {
+    const model::TestTruth truth = scene_truth(scene_of(kShortPull + law), 350.0, 1);
+    ASSERT_GT(truth.cycles.size(), 5U);
+    std::vector<double> S;
+    std::vector<double> K;
+    for (const model::TrueCycle& cycle : truth.cycles) {
+      S.push_back(cycle.mu_s);
+      K.push_back(cycle.mu_k);
+    }
+    const auto mean = [](const std::vector<double>& of) {
+      return std::accumulate(of.begin() + 1, of.end(), 0.0) / static_cast<double>(of.size() - 1);
+    };
+    EXPECT_NEAR(truth.mu_s, mean(S), 1e-12);
+    EXPECT_NEAR(truth.mu_k, mean(K), 1e-12);
+    EXPECT_GT(std::abs(truth.mu_s - 0.35), 0.001);
+  }
+}
+
+TEST(SceneLaws, TrueKineticCoefficientIsThatAtTheSpeedOfThePull) {
+  const std::string slope = "[effects.velocity_dependence]\nper_speed = \"-0.2 s/m\"\n";
+  const model::TestTruth linear = scene_truth(scene_of(kShortPull + slope), 350.0, 1);
+  EXPECT_NEAR(linear.mu_k, 0.30 - 0.2 * linear.pull_speed_m_per_s, 1e-12);
+  const std::string stribeck = "[effects.stribeck]\nrise = 0.04\nspeed = \"5 mm/s\"\nexponent = 1\n";
+  const model::TestTruth curved = scene_truth(scene_of(kShortPull + stribeck), 350.0, 1);
+  EXPECT_NEAR(curved.mu_k, 0.30 + 0.04 * std::exp(-curved.pull_speed_m_per_s / 0.005), 1e-12);
+  EXPECT_NEAR(curved.mu_s, 0.35, 1e-12);
 }
 
 // a > b: no stick-slip at any speed.

@@ -26,6 +26,13 @@ using test::TemporaryFolder;
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
+/// At once, also where another thread puts a file there meanwhile.
+void take_away(const fs::path& folder) {
+  const fs::path elsewhere = folder.native() + ".gone";
+  fs::rename(folder, elsewhere);
+  fs::remove_all(elsewhere);
+}
+
 constexpr int kOtherDevice = 1000;
 
 /// Things that happen, in order, and a way to wait for them.
@@ -80,7 +87,7 @@ class FolderWatched : public testing::Test {
 TEST_F(FolderWatched, OneThatIsMissingOnItsOwnFileSystemMayBeMadeAgain) {
   FolderWatch watch{records_, disk_};
   EXPECT_FALSE(watch.look());
-  fs::remove_all(folder_ / "disk");
+  take_away(folder_ / "disk");
   EXPECT_FALSE(watch.look());
 }
 
@@ -93,7 +100,7 @@ TEST_F(FolderWatched, OneBelowAMountThatWentAwayMayNot) {
   ASSERT_TRUE(away);
   EXPECT_EQ(away->why, records_.string() + ": its file system is not mounted any more");
   EXPECT_EQ(away->to_do, fmt::format("mount the file system of {} again", records_.string()));
-  fs::remove_all(folder_ / "disk");
+  take_away(folder_ / "disk");
   EXPECT_TRUE(watch.look());
   fs::create_directories(folder_ / "disk");
   EXPECT_TRUE(watch.look());
@@ -155,7 +162,7 @@ TEST_F(FolderWatched, OneThatCannotBeLookedAtIsAway) {
   }
   disk_.hide({}, 0);
   EXPECT_FALSE(watch.look());
-  fs::remove_all(records_);
+  take_away(records_);
   std::ofstream{records_} << "a file";
   EXPECT_TRUE(watch.look());
 }
@@ -275,7 +282,7 @@ TEST_F(StorageAstray, NothingIsWrittenBelowAMountThatWentAway) {
   while (storage_->state().waiting_size < 1400) std::this_thread::yield();
   EXPECT_TRUE(fs::is_empty(records_));
   EXPECT_EQ(storage_->scan_counts().recorded, 0);
-  fs::remove_all(folder_ / "disk");
+  take_away(folder_ / "disk");
   fs::rename(folder_ / "unmounted", folder_ / "disk");
   disk_.mount(folder_ / "disk", kOtherDevice);
   told_.wait_for("resumed");
@@ -296,7 +303,7 @@ TEST_F(StorageAstray, AJournalThatVanishesBeforeItsRecordIsMadeComesBack) {
   feed(350);
   end(1);
   told_.wait_for("test 1 failed: not yet");
-  fs::remove_all(folder_ / "disk");
+  take_away(folder_ / "disk");
   told_.wait_for("test 1 anew: ");
   refuses = false;
   storage_->stop();
@@ -489,7 +496,7 @@ TEST(BallastAstray, IsTakenAgainWhereItWentWithItsFolder) {
   const test::FaultyDisk disk;
   fs::create_directory(folder / "records");
   Ballast ballast{folder / "records", disk};
-  fs::remove_all(folder / "records");
+  take_away(folder / "records");
   ballast.take();
   EXPECT_FALSE(fs::exists(folder / "records"));
   fs::create_directory(folder / "records");
