@@ -63,6 +63,11 @@ void add_distance(const TestResults& other_rung, TestResults& results) {
   add(other_rung.delta_mu, results.delta_mu);
 }
 
+void add_distance_to_mean_force(const Estimate& kinetic, TestResults& results) {
+  if (kinetic.value && results.mu_k.value)
+    add_systematic(results.mu_k, UncertaintySource::kRung, *kinetic.value - *results.mu_k.value);
+}
+
 bool may_hold_damping(const TestResults& results) { return results.Q.value.value_or(kSlow) < kSlow; }
 
 void tell_held_damping(TestResults& results) {

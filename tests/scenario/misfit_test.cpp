@@ -58,6 +58,21 @@ TEST_P(Misfit, EachTestHasNumbersThatCoverTheTruth) {
   EXPECT_LE(mixed, 5);
 }
 
+// The slip begins with friction that has rested, and rings about that of a sled that slides: the middle of
+// its first fall lies some 0.05 above K.
+TEST(MisfitOfARing, KIsNoSurerThanTheForceOfTheSledThatSlidesOn) {
+  constexpr int kTests = 10;
+  const auto file =
+      std::filesystem::path(STICKSLIP_SOURCE_DIR) / "config/scenes/rate-and-state-above-critical.toml";
+  for (const test::AnalysedTest& test : test::analyse_scene(file, kTests)) {
+    ASSERT_EQ(test.results.regime, Regime::kRingDown);
+    const Estimate& K = test.results.mu_k;
+    ASSERT_TRUE(K.value);
+    EXPECT_LE(std::abs(*K.value - test.truth->mu_k),
+              2.0 * (K.systematic_uncertainty.value_or(0.0) + K.standard_error.value_or(0.0)));
+  }
+}
+
 // Hum is no noise and no friction: the fit of these tests leaves 1.3 to 1.5 times the noise.
 TEST(MisfitOfTheFit, IsToldAndWidensTheIntervals) {
   constexpr int kTests = 20;
