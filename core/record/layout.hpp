@@ -38,6 +38,8 @@ void read_identity(hid_t entry, Record& record);
 [[nodiscard]] std::string write_raw(hid_t entry, const Record& record, const ScanSource& scans,
                                     const std::function<void()>& take_end);
 void read_raw(hid_t entry, Record& record);
+/// The part of read_raw() without scan indices and flags. Expects read_quantity().
+void read_raw_values(hid_t entry, Record& record);
 /// The part of read_raw() about the board, without the scans.
 void read_quantity(hid_t entry, daq::BoardInfo& board);
 /// Throws unless scans, raw values and noise-free force are those of the source, to the last bit.

@@ -110,9 +110,14 @@ std::string write_columns(TableWriter& table, const Record& record, const ScanSo
   return values.sha256();
 }
 
+/// Of the data set.
+std::string value_name(daq::RawQuantity quantity) {
+  return quantity == daq::RawQuantity::kCounts ? "counts" : std::string{name(quantity).name};
+}
+
 template <typename Stored>
 void read_values(hid_t raw, const std::string& name, Record& record) {
-  const auto values = read_column<Stored>(raw, name, record.scan.size());
+  const auto values = read_column<Stored>(raw, name);
   record.raw.assign(values.begin(), values.end());
 }
 
@@ -179,16 +184,19 @@ std::string write_raw(hid_t entry, const Record& record, const ScanSource& scans
 }
 
 std::string sha256_of_raw(const Record& record) {
+  constexpr std::size_t kPiece = std::size_t{1} << 16U;
   Sha256 sha;
-  RecordScans{record}.for_each_piece([&](const ScanPiece& piece) {
+  for (std::size_t from = 0; from < record.raw.size(); from += kPiece) {
+    const auto raw =
+        std::span<const double>{record.raw}.subspan(from, std::min(kPiece, record.raw.size() - from));
     if (record.header.board.quantity != daq::RawQuantity::kCounts) {
-      sha.add(piece.raw);
+      sha.add(raw);
     } else if (counts_fit_u16(record.header.board)) {
-      sha.add(std::span<const std::uint16_t>{std::vector<std::uint16_t>(piece.raw.begin(), piece.raw.end())});
+      sha.add(std::span<const std::uint16_t>{std::vector<std::uint16_t>(raw.begin(), raw.end())});
     } else {
-      sha.add(std::span<const std::uint32_t>{std::vector<std::uint32_t>(piece.raw.begin(), piece.raw.end())});
+      sha.add(std::span<const std::uint32_t>{std::vector<std::uint32_t>(raw.begin(), raw.end())});
     }
-  });
+  }
   return sha.hexadecimal();
 }
 
@@ -204,27 +212,34 @@ void read_quantity(hid_t entry, daq::BoardInfo& board) {
   board.quantity = *quantity;
 }
 
-void read_raw(hid_t entry, Record& record) {
+void read_raw_values(hid_t entry, Record& record) {
   const GroupHandle raw = open_group(entry, "raw");
-  daq::BoardInfo& board = record.header.board;
-  record.scan = read_column<std::int64_t>(raw.get(), "scan");
-  for (const daq::ScanIndex scan : record.scan) range_checked(scan);
-  read_quantity(entry, board);
-  if (board.quantity == daq::RawQuantity::kCounts) {
-    if (holds<std::uint16_t>(raw.get(), "counts")) {
-      read_values<std::uint16_t>(raw.get(), "counts", record);
-    } else {
-      read_values<std::uint32_t>(raw.get(), "counts", record);
-    }
+  const daq::RawQuantity quantity = record.header.board.quantity;
+  if (quantity != daq::RawQuantity::kCounts) {
+    read_values<double>(raw.get(), value_name(quantity), record);
+  } else if (holds<std::uint16_t>(raw.get(), "counts")) {
+    read_values<std::uint16_t>(raw.get(), "counts", record);
   } else {
-    read_values<double>(raw.get(), std::string{name(board.quantity).name}, record);
-  }
-  if (std::adjacent_find(record.scan.begin(), record.scan.end(), std::greater_equal<>{}) !=
-      record.scan.end()) {
-    throw HdfError("raw/scan does not rise");
+    read_values<std::uint32_t>(raw.get(), "counts", record);
   }
   if (std::any_of(record.raw.begin(), record.raw.end(), [](double value) { return !std::isfinite(value); })) {
     throw HdfError("raw holds values that are not finite");
+  }
+}
+
+void read_raw(hid_t entry, Record& record) {
+  read_quantity(entry, record.header.board);
+  read_raw_values(entry, record);
+  const GroupHandle raw = open_group(entry, "raw");
+  record.scan = read_column<std::int64_t>(raw.get(), "scan");
+  if (record.raw.size() != record.scan.size()) {
+    throw HdfError(fmt::format("{} has {} rows, not {}", value_name(record.header.board.quantity),
+                               record.raw.size(), record.scan.size()));
+  }
+  for (const daq::ScanIndex scan : record.scan) range_checked(scan);
+  if (std::adjacent_find(record.scan.begin(), record.scan.end(), std::greater_equal<>{}) !=
+      record.scan.end()) {
+    throw HdfError("raw/scan does not rise");
   }
   if (!has(raw.get(), "flags")) return;
   const auto flags = read_column<std::uint8_t>(raw.get(), "flags", record.scan.size());

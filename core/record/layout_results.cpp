@@ -53,7 +53,6 @@ analysis::Estimate read_estimate(hid_t group, const std::string& key) {
   }
   estimate.standard_error = find_number_attribute<double>(dataset.get(), kStandardError);
   estimate.systematic_uncertainty = find_number_attribute<double>(dataset.get(), kSystematic);
-  if (!estimate.systematic_uncertainty) return estimate;
   for_each_part(estimate.systematic_parts,
                 [&](analysis::UncertaintySource source, std::optional<double>& size) {
                   size = find_number_attribute<double>(dataset.get(), part_attribute(source));

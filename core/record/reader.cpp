@@ -93,11 +93,9 @@ Record read_shortened(const GivenFile& given, const std::filesystem::path& path)
   check_format(file);
   const GroupHandle entry = open_group(file.get(), "entry");
   Record record = facts_in(entry.get());
-  read_raw(entry.get(), record);
+  read_raw_values(entry.get(), record);
   check_facts(record);
-  record.scan.clear();
   record.raw.clear();
-  record.spikes.clear();
   read_cycles(entry.get(), record);
   if (has(entry.get(), "truth")) record.end->truth = read_truth_facts(entry.get());
   return record;
