@@ -58,19 +58,41 @@ TEST_P(Misfit, EachTestHasNumbersThatCoverTheTruth) {
   EXPECT_LE(mixed, 5);
 }
 
-// The slip begins with friction that has rested, and rings about that of a sled that slides: the middle of
-// its first fall lies some 0.05 above K.
-TEST(MisfitOfARing, KIsNoSurerThanTheForceOfTheSledThatSlidesOn) {
+class OtherLaws : public testing::TestWithParam<const char*> {};
+
+INSTANTIATE_TEST_SUITE_P(Scenes, OtherLaws,
+                         testing::Values("contact-ageing", "stribeck", "rate-and-state-ageing",
+                                         "rate-and-state-slip-law", "rate-and-state-above-critical"),
+                         [](const auto& scene) {
+                           std::string name{scene.param};
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+// S of contacts that have rested as long as those of the test, K at the speed of the pull. Of 300 tests of
+// each scene 93 % or more are within two errors (docs/detector-limits.md); of ten, more than three are not
+// with a probability of 0.4 %.
+TEST_P(OtherLaws, SAndKAreWithinTwoErrors) {
   constexpr int kTests = 10;
+  constexpr int kMisses = 3;
   const auto file =
-      std::filesystem::path(STICKSLIP_SOURCE_DIR) / "config/scenes/rate-and-state-above-critical.toml";
+      std::filesystem::path(STICKSLIP_SOURCE_DIR) / "config/scenes" / (std::string{GetParam()} + ".toml");
+  int misses_S = 0;
+  int misses_K = 0;
+  int misses_delta = 0;
+  const auto misses = [](const Estimate& estimate, double truth) {
+    const double error =
+        estimate.systematic_uncertainty.value_or(0.0) + estimate.standard_error.value_or(0.0);
+    return !estimate.value || std::abs(*estimate.value - truth) > 2.0 * error ? 1 : 0;
+  };
   for (const test::AnalysedTest& test : test::analyse_scene(file, kTests)) {
-    ASSERT_EQ(test.results.regime, Regime::kRingDown);
-    const Estimate& K = test.results.mu_k;
-    ASSERT_TRUE(K.value);
-    EXPECT_LE(std::abs(*K.value - test.truth->mu_k),
-              2.0 * (K.systematic_uncertainty.value_or(0.0) + K.standard_error.value_or(0.0)));
+    misses_S += misses(test.results.mu_s, test.truth->mu_s);
+    misses_K += misses(test.results.mu_k, test.truth->mu_k);
+    misses_delta += misses(test.results.delta_mu, test.truth->mu_s - test.truth->mu_k);
   }
+  EXPECT_LE(misses_S, kMisses);
+  EXPECT_LE(misses_K, kMisses);
+  EXPECT_LE(misses_delta, kMisses);
 }
 
 // Hum is no noise and no friction: the fit of these tests leaves 1.3 to 1.5 times the noise.
