@@ -63,9 +63,12 @@ void add_distance(const TestResults& other_rung, TestResults& results) {
   add(other_rung.delta_mu, results.delta_mu);
 }
 
-void add_distance_to_mean_force(const Estimate& kinetic, TestResults& results) {
-  if (kinetic.value && results.mu_k.value)
-    add_systematic(results.mu_k, UncertaintySource::kRung, *kinetic.value - *results.mu_k.value);
+void add_distance_to_mean_force(const Estimate& mean_force, TestResults& results) {
+  if (!mean_force.value || !results.mu_k.value) return;
+  const double distance = *mean_force.value - *results.mu_k.value;
+  add_systematic(results.mu_k, UncertaintySource::kRung, distance);
+  if (results.mu_s.systematic_parts[UncertaintySource::kBound])
+    add_systematic(results.mu_s, UncertaintySource::kRung, distance);
 }
 
 bool may_hold_damping(const TestResults& results) { return results.Q.value.value_or(kSlow) < kSlow; }

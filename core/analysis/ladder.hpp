@@ -29,10 +29,11 @@ void add_distance_to_fits(const base::LongColumn<detect::Cycle>& fitted, TestRes
 void add_distance(const TestResults& other_rung, TestResults& results);
 
 /// Adds to the systematic uncertainty of K by turning points how far it lies from the mean force, the other
-/// way to K that asks for no law: exact of a sled that slides on; of one that sticks and slips it lies above
-/// K by a part of the error that friction changing within the slips makes. \param kinetic  that mean; may
-/// have no value.
-void add_distance_to_mean_force(const Estimate& kinetic, TestResults& results);
+/// way to K that asks for no law. Of a sled that slides on the mean force is K. Of one that sticks and slips
+/// the distance is of the size of the error that friction changing within the slips makes
+/// (docs/detector-limits.md). S that was set above K by a bound becomes as uncertain.
+/// \param mean_force  may have no value.
+void add_distance_to_mean_force(const Estimate& mean_force, TestResults& results);
 
 /// Whether the pull is so slow that S − K is half the drop whatever the damping.
 [[nodiscard]] bool may_hold_damping(const TestResults& results);

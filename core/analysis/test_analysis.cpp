@@ -357,7 +357,7 @@ TestResults TestAnalysis::finish() {
       base::add(results.findings, slack_finding(slack.count, slips.size()));
     }
     if (is_fitted && !estimates.model_describes)
-      add_distance_to_mean_force(results.kinetic_coefficient, estimates.results);
+      add_distance_to_mean_force(mean_force(trace, slips), estimates.results);
     take_model_results(estimates.results, results);
     results.mu_slope = mu_slope(trace, slips, sigma, estimates);
     if (fits_whole_test() && estimates.model_describes) speed_results(trace, estimates, results);

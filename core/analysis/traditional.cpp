@@ -88,6 +88,12 @@ Estimate mean_of_travel(const estimate::Trace& trace, double start_s, const mode
 
 }  // namespace
 
+Estimate mean_force(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips) {
+  const int cycles = static_cast<int>(slips.size()) - 1;
+  const Estimate to_the_end = mean_of_cycles(trace, slips, std::max(cycles, model::Method{}.kinetic_cycles));
+  return to_the_end.value || cycles < 1 ? to_the_end : mean_of_cycles(trace, slips, cycles);
+}
+
 bool begins_under_load(const estimate::Trace& trace) {
   const double half = 0.5 * *std::max_element(trace.value.begin(), trace.value.end());
   const auto first = std::min<std::ptrdiff_t>(kFirstScans, static_cast<std::ptrdiff_t>(trace.size()));

@@ -27,6 +27,10 @@ struct TraditionalCoefficients {
                                                                const model::Method& method,
                                                                std::optional<double> pull_speed_m_per_s = {});
 
+/// Mean over all cycles of the trace, peak to peak, and over ten periods from the first peak on where the
+/// oscillation dies away before: whatever the method averages. No value of a single slip.
+[[nodiscard]] Estimate mean_force(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips);
+
 /// Whether the trace begins while the sled slides: half of its first scans are above half of the largest. The
 /// first peak is then no static one.
 [[nodiscard]] bool begins_under_load(const estimate::Trace& trace);

@@ -25,9 +25,9 @@ enum class UncertaintySource : std::uint8_t {
   kDamping,      ///< Whether the damper's force counts at the onset; a damping that is held.
   kCreep,        ///< Creep of the contact before a slip that does not stick again.
   kMisfit,       ///< What differs from the fit alike in each slip.
-  kRung,         ///< Distance to the result of another rung, or of the slips' own fits.
-  kCorrection,   ///< By turning points: the whole correction for belt and damping.
-  kBound,        ///< S − K is not told from zero: half of its bound.
+  kRung,  ///< Distance to the result of another rung, of the slips' own fits, or of K to the mean force.
+  kCorrection,  ///< By turning points: the whole correction for belt and damping.
+  kBound,       ///< S − K is not told from zero: half of its bound.
 };
 
 inline constexpr std::size_t kUncertaintySourceCount = 9;

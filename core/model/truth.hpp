@@ -56,8 +56,10 @@ struct TestTruth {
   std::string scene_name;
   std::string scene_text;  ///< Complete text of the scene file.
   std::uint64_t seed = 0;
-  double mu_s = 0.0;  ///< Mean over the slips of the pull, without the first where there are more.
-  double mu_k = 0.0;  ///< The same, at the speed of the pull.
+  /// Mean over the slips of the pull, where there are more without the first and those after a hold; of
+  /// contacts that scatter that of the paper.
+  double mu_s = 0.0;
+  double mu_k = 0.0;  ///< The same, at the speed of the belt.
   double omega_rad_per_s = 0.0;
   double gamma_over_2omega = 0.0;
   double pull_speed_m_per_s = 0.0;

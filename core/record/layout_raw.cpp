@@ -110,14 +110,9 @@ std::string write_columns(TableWriter& table, const Record& record, const ScanSo
   return values.sha256();
 }
 
-/// Of the data set.
-std::string value_name(daq::RawQuantity quantity) {
-  return quantity == daq::RawQuantity::kCounts ? "counts" : std::string{name(quantity).name};
-}
-
 template <typename Stored>
 void read_values(hid_t raw, const std::string& name, Record& record) {
-  const auto values = read_column<Stored>(raw, name);
+  const auto values = read_column<Stored>(raw, name, row_count(raw, "scan"));
   record.raw.assign(values.begin(), values.end());
 }
 
@@ -216,7 +211,7 @@ void read_raw_values(hid_t entry, Record& record) {
   const GroupHandle raw = open_group(entry, "raw");
   const daq::RawQuantity quantity = record.header.board.quantity;
   if (quantity != daq::RawQuantity::kCounts) {
-    read_values<double>(raw.get(), value_name(quantity), record);
+    read_values<double>(raw.get(), std::string{name(quantity).name}, record);
   } else if (holds<std::uint16_t>(raw.get(), "counts")) {
     read_values<std::uint16_t>(raw.get(), "counts", record);
   } else {
@@ -231,11 +226,7 @@ void read_raw(hid_t entry, Record& record) {
   read_quantity(entry, record.header.board);
   read_raw_values(entry, record);
   const GroupHandle raw = open_group(entry, "raw");
-  record.scan = read_column<std::int64_t>(raw.get(), "scan");
-  if (record.raw.size() != record.scan.size()) {
-    throw HdfError(fmt::format("{} has {} rows, not {}", value_name(record.header.board.quantity),
-                               record.raw.size(), record.scan.size()));
-  }
+  record.scan = read_column<std::int64_t>(raw.get(), "scan", record.raw.size());
   for (const daq::ScanIndex scan : record.scan) range_checked(scan);
   if (std::adjacent_find(record.scan.begin(), record.scan.end(), std::greater_equal<>{}) !=
       record.scan.end()) {

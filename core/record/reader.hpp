@@ -21,7 +21,7 @@ namespace stickslip::record {
 
 /// Reads a record whose scans (with what stands beside them: second channel, spikes, noise-free force), gaps,
 /// events, and cycles and modes of the truth stay empty. The raw values are compared with their checksum.
-/// Errors as read_record().
+/// Errors as read_record(), but damage in what is not read is not found.
 [[nodiscard]] base::Result<Record> read_without_scans(const std::filesystem::path& path,
                                                       const FileCalls& calls = system_calls());
 

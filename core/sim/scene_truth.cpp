@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/base/long_column.hpp"
 #include "core/model/slip_waveform.hpp"
@@ -128,26 +129,55 @@ Regime regime_of(const Tally& slips, bool oscillates) {
   return Regime::kUndecided;
 }
 
-/// S and K as the results mean them: averaged over the slips of the pull, without the first, which follows
-/// another rest, where there are more; K where the sled slides at the belt's speed.
+/// Whether the belt stands still at any time in [begin_s, end_s].
+bool stands_between(const std::vector<BeltSegment>& belt, double begin_s, double end_s) {
+  double start_s = 0.0;
+  for (const BeltSegment& segment : belt) {
+    const double stop_s = start_s + segment.duration_s;
+    const bool rests = segment.speed_m_per_s == 0.0 && segment.acceleration_m_per_s2 == 0.0 &&
+                       segment.jerk_m_per_s3 == 0.0 && segment.decaying_speed_m_per_s == 0.0;
+    if (rests && start_s < end_s && begin_s < stop_s) return true;
+    start_s = stop_s;
+  }
+  return false;
+}
+
+/// What sliding at that speed adds to K.
+double change_by_speed(const VelocityDependence& law, const Coefficients& paper, double speed_m_per_s) {
+  const double rise = std::min(law.stribeck_rise, paper.mu_s - paper.mu_k);
+  return law.per_speed_s_per_m * speed_m_per_s +
+         rise * std::exp(-std::pow(speed_m_per_s / law.stribeck_speed_m_per_s, law.stribeck_exponent));
+}
+
+/// S and K as the results mean them: averaged over the slips of the pull, where there are more without the
+/// first and those after a hold, which follow another rest; K where the sled slides at the belt's speed.
+/// Where contacts scatter and nothing else moves S and K, those of the paper: the results' errors are about
+/// them.
 void describe_paper(const Motion& motion, const Chronicle& chronicle, double pull_end_s,
                     model::TestTruth& truth) {
-  double slips = -1.0;  // The first is no part of the mean.
-  Coefficients mean{motion.mu_s, motion.mu_k};
+  const bool paper_alone = motion.paper.scatter && !motion.paper.contact_ageing && !motion.kinetic_drift;
+  const auto in_force = [&](const Coefficients& paper, double speed_m_per_s) {
+    Coefficients all = paper_alone ? Coefficients{motion.mu_s, motion.mu_k} : paper;
+    if (motion.velocity_dependence)
+      all.mu_k += change_by_speed(*motion.velocity_dependence, all, std::abs(speed_m_per_s));
+    return all;
+  };
+  Coefficients mean = in_force({motion.mu_s, motion.mu_k}, truth.pull_speed_m_per_s);
+  double count = 0.0;
+  double before_s = 0.0;
   for (const Chronicle::Slip& slip : chronicle.slips()) {
     if (slip.onset_s >= pull_end_s) break;
-    const double share = 1.0 / std::max(1.0, ++slips);
-    mean.mu_s += share * (slip.paper.mu_s - mean.mu_s);
-    mean.mu_k += share * (slip.paper.mu_k - mean.mu_k);
+    const bool follows_a_rest = stands_between(motion.belt, before_s, slip.onset_s);
+    before_s = slip.onset_s;
+    if (follows_a_rest && count > 0.0) continue;
+    const Coefficients paper = in_force(slip.paper, belt_speed_m_per_s(motion.belt, slip.onset_s));
+    const double share = 1.0 / std::max(1.0, count);  // The second replaces the first.
+    count += 1.0;
+    mean.mu_s += share * (paper.mu_s - mean.mu_s);
+    mean.mu_k += share * (paper.mu_k - mean.mu_k);
   }
   truth.mu_s = mean.mu_s;
   truth.mu_k = mean.mu_k;
-  if (!motion.velocity_dependence) return;
-  const VelocityDependence& law = *motion.velocity_dependence;
-  const double speed_m_per_s = truth.pull_speed_m_per_s;
-  truth.mu_k += law.per_speed_s_per_m * speed_m_per_s +
-                std::min(law.stribeck_rise, mean.mu_s - mean.mu_k) *
-                    std::exp(-std::pow(speed_m_per_s / law.stribeck_speed_m_per_s, law.stribeck_exponent));
 }
 
 void describe_oscillation(const Scene& scene, const Tally& slips, model::TestTruth& truth) {

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <string>
 
+#include "core/analysis/ladder.hpp"
 #include "tests/support/scene_tests.hpp"
 
 namespace stickslip {
@@ -61,8 +62,9 @@ TEST_P(Misfit, EachTestHasNumbersThatCoverTheTruth) {
 class OtherLaws : public testing::TestWithParam<const char*> {};
 
 INSTANTIATE_TEST_SUITE_P(Scenes, OtherLaws,
-                         testing::Values("contact-ageing", "stribeck", "rate-and-state-ageing",
-                                         "rate-and-state-slip-law", "rate-and-state-above-critical"),
+                         testing::Values("contact-ageing", "stribeck", "velocity-weakening",
+                                         "rate-and-state-ageing", "rate-and-state-slip-law",
+                                         "rate-and-state-above-critical"),
                          [](const auto& scene) {
                            std::string name{scene.param};
                            std::erase(name, '-');
@@ -81,9 +83,8 @@ TEST_P(OtherLaws, SAndKAreWithinTwoErrors) {
   int misses_K = 0;
   int misses_delta = 0;
   const auto misses = [](const Estimate& estimate, double truth) {
-    const double error =
-        estimate.systematic_uncertainty.value_or(0.0) + estimate.standard_error.value_or(0.0);
-    return !estimate.value || std::abs(*estimate.value - truth) > 2.0 * error ? 1 : 0;
+    return !estimate.value || std::abs(*estimate.value - truth) > 2.0 * analysis::total_error(estimate) ? 1
+                                                                                                        : 0;
   };
   for (const test::AnalysedTest& test : test::analyse_scene(file, kTests)) {
     misses_S += misses(test.results.mu_s, test.truth->mu_s);

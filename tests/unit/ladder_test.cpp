@@ -59,6 +59,26 @@ TEST(Ladder, TurningPointsAreAsFarOffAsTheMeanOfTheFitsOfSlips) {
   EXPECT_FALSE(results.mu_k.systematic_uncertainty);
 }
 
+TEST(Ladder, KByTurningPointsIsAsFarOffAsTheMeanForce) {
+  TestResults results = with_levels(0.33, 0.28);
+  add_distance_to_mean_force(Estimate::of(0.27), results);
+  EXPECT_NEAR(results.mu_k.systematic_parts[UncertaintySource::kRung].value(), 0.01, 1e-15);
+  EXPECT_NEAR(results.mu_k.systematic_uncertainty.value(), 0.01, 1e-15);
+  EXPECT_FALSE(results.mu_s.systematic_uncertainty);
+  EXPECT_FALSE(results.delta_mu.systematic_uncertainty);
+
+  add_distance_to_mean_force(Estimate::none("only one peak"), results);
+  EXPECT_NEAR(results.mu_k.systematic_uncertainty.value(), 0.01, 1e-15);
+}
+
+// S = K + half the bound: no surer than K.
+TEST(Ladder, SThatABoundSetsAboveKIsAsFarOff) {
+  TestResults results = with_levels(0.28, 0.28);
+  tell_bound(0.02, results);
+  add_distance_to_mean_force(Estimate::of(0.25), results);
+  EXPECT_NEAR(results.mu_s.systematic_uncertainty.value(), 0.01 + 0.03, 1e-15);
+}
+
 TEST(Ladder, DampingMayBeHeldFarBelowTheThresholdAlone) {
   TestResults results;
   EXPECT_FALSE(may_hold_damping(results)) << "Q is unknown";

@@ -429,13 +429,24 @@ TEST(IsoTime, GoesThereAndBackExactly) {
 
 // --- Files that are no records -------------------------------------------------------------------
 
-void expect_refused(const fs::path& path, const std::string& reason) {
-  const auto read = read_record(path);
+void expect_refusal(const base::Result<record::Record>& read, const fs::path& path,
+                    const std::string& reason) {
   ASSERT_FALSE(read) << path;
   EXPECT_EQ(read.error().exit_status(), 2);
   EXPECT_THAT(read.error().message, HasSubstr(path.string()));
   EXPECT_THAT(read.error().message, HasSubstr(reason));
   EXPECT_EQ(read.error().message.find('\n'), std::string::npos);
+}
+
+void expect_refused(const fs::path& path, const std::string& reason) {
+  expect_refusal(read_record(path), path, reason);
+  expect_refusal(record::read_without_scans(path), path, reason);
+}
+
+/// Damage in what read_without_scans() does not read.
+void expect_whole_refused(const fs::path& path, const std::string& reason) {
+  expect_refusal(read_record(path), path, reason);
+  EXPECT_TRUE(record::read_without_scans(path));
 }
 
 TEST(HostileFile, ThatIsNoHdf5) {
@@ -519,8 +530,9 @@ TEST(HostileFile, WithOtherTypesOrShapes) {
   const TemporaryFolder folder;
   expect_refused(altered(folder, [](hid_t f) { H5Ldelete(f, "entry/raw/scan", H5P_DEFAULT); }),
                  "data set scan is missing");
-  expect_refused(altered(folder, [](hid_t f) { replace_column(f, "entry/raw/scan", H5T_IEEE_F64LE, 40); }),
-                 "scan has another type");
+  expect_whole_refused(
+      altered(folder, [](hid_t f) { replace_column(f, "entry/raw/scan", H5T_IEEE_F64LE, 40); }),
+      "scan has another type");
   expect_refused(altered(folder, [](hid_t f) { replace_column(f, "entry/raw/counts", H5T_STD_U16LE, 39); }),
                  "counts has 39 rows, not 40");
   expect_refused(altered(folder, [](hid_t f) { replace_column(f, "entry/raw/counts", H5T_C_S1, 40); }),
@@ -546,8 +558,9 @@ TEST(HostileFile, WithAlteredValues) {
   // 40 zeros where other counts were: type and shape fit, the checksum does not.
   expect_refused(altered(folder, [](hid_t f) { replace_column(f, "entry/raw/counts", H5T_STD_U16LE, 40); }),
                  "do not match process/sha256");
-  expect_refused(altered(folder, [](hid_t f) { replace_column(f, "entry/raw/scan", H5T_STD_I64LE, 40); }),
-                 "scan does not rise");
+  expect_whole_refused(
+      altered(folder, [](hid_t f) { replace_column(f, "entry/raw/scan", H5T_STD_I64LE, 40); }),
+      "scan does not rise");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -121,6 +122,47 @@ TEST(SceneLaws, TrueKineticCoefficientIsThatAtTheSpeedOfThePull) {
   const model::TestTruth curved = scene_truth(scene_of(kShortPull + stribeck), 350.0, 1);
   EXPECT_NEAR(curved.mu_k, 0.30 + 0.04 * std::exp(-curved.pull_speed_m_per_s / 0.005), 1e-12);
   EXPECT_NEAR(curved.mu_s, 0.35, 1e-12);
+}
+
+// The carriage of a tester pulls either way; the law asks for the speed of sliding.
+TEST(SceneLaws, TrueKineticCoefficientIsThatOfABeltThatGoesBack) {
+  const std::string begin =
+      "duration = \"2 s\"\n" + kShortPull.substr(0, kShortPull.find("[effects.constant_speed]"));
+  const auto truth_at = [&](const std::string& speed) {
+    return scene_truth(
+        scene_of(begin + "[effects.piecewise_speed]\npoints = [{at = \"0.1 s\", speed = \"" + speed +
+                 "\"}, {at = \"2 s\", speed = \"" + speed +
+                 "\"}]\n[effects.stribeck]\nrise = 0.04\nspeed = \"5 mm/s\"\nexponent = 1.5\n"),
+        350.0, 1);
+  };
+  const double K = 0.30 + 0.04 * std::exp(-std::pow(4.0 / 5.0, 1.5));
+  EXPECT_NEAR(truth_at("4 mm/s").mu_k, K, 1e-12);
+  EXPECT_NEAR(truth_at("-4 mm/s").mu_k, K, 1e-12);
+}
+
+// Each contact is another one; what the results are uncertain about is the paper.
+TEST(SceneLaws, TruthOfContactsThatScatterIsThePaper) {
+  const model::TestTruth truth =
+      scene_truth(scene_of(kShortPull + "[effects.scatter]\ndelta_mu_cv = 0.2\nmu_k_sd = 0.004\n"), 350.0, 1);
+  ASSERT_GT(truth.cycles.size(), 5U);
+  EXPECT_EQ(truth.mu_s, 0.35);
+  EXPECT_EQ(truth.mu_k, 0.30);
+}
+
+// A contact that has rested for long is stronger; the results are of the slips between the holds.
+TEST(SceneLaws, TruthIsWithoutTheSlipsAfterHolds) {
+  const auto folder = std::filesystem::path(STICKSLIP_SOURCE_DIR) / "config/scenes";
+  const auto scene = load_scene(folder / "slide-hold-slide.toml");
+  ASSERT_TRUE(scene);
+  const model::TestTruth truth = scene_truth(*scene, 350.0, 1);
+  double largest = 0.0;
+  for (const model::TrueCycle& cycle : truth.cycles) largest = std::max(largest, cycle.mu_s);
+  std::vector<double> S;
+  for (const model::TrueCycle& cycle : truth.cycles) S.push_back(cycle.mu_s);
+  std::ranges::sort(S);
+  // Half of the slips follow short rests; those after holds lie far above.
+  EXPECT_GT(largest, S[S.size() / 2] + 0.01);
+  EXPECT_NEAR(truth.mu_s, S[S.size() / 2], 0.0005);
 }
 
 // a > b: no stick-slip at any speed.
