@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/base/wording.hpp"
 #include "core/record/given_file.hpp"
@@ -30,6 +31,18 @@ void check_format(const FileHandle& file) {
   const auto version = find_number_attribute<std::int64_t>(file.get(), "format_version");
   if (!version) throw HdfError("is a record without format version");
   if (const std::string refusal = version_refusal(*version); !refusal.empty()) throw HdfError(refusal);
+}
+
+struct OpenEntry {
+  FileHandle file;
+  GroupHandle entry;  ///< Closed before the file.
+};
+
+OpenEntry open_entry(const GivenFile& given, const std::filesystem::path& path) {
+  FileHandle file = open_record(given, path);
+  check_format(file);
+  GroupHandle entry = open_group(file.get(), "entry");
+  return {std::move(file), std::move(entry)};
 }
 
 /// Fields without which nothing can be computed from the raw values.
@@ -73,9 +86,7 @@ Record read_facts_of(const GivenFile& given, const std::filesystem::path& path) 
 }
 
 Record read_whole(const GivenFile& given, const std::filesystem::path& path) {
-  const FileHandle file = open_record(given, path);
-  check_format(file);
-  const GroupHandle entry = open_group(file.get(), "entry");
+  const auto [file, entry] = open_entry(given, path);
   Record record = facts_in(entry.get());
   read_raw(entry.get(), record);
   read_second(entry.get(), record);
@@ -89,9 +100,7 @@ Record read_whole(const GivenFile& given, const std::filesystem::path& path) {
 }
 
 Record read_shortened(const GivenFile& given, const std::filesystem::path& path) {
-  const FileHandle file = open_record(given, path);
-  check_format(file);
-  const GroupHandle entry = open_group(file.get(), "entry");
+  const auto [file, entry] = open_entry(given, path);
   Record record = facts_in(entry.get());
   read_raw_values(entry.get(), record);
   check_facts(record);
@@ -103,9 +112,7 @@ Record read_shortened(const GivenFile& given, const std::filesystem::path& path)
 
 void verify(const GivenFile& given, const std::filesystem::path& path, const Record& record,
             const ScanSource& scans) {
-  const FileHandle file = open_record(given, path);
-  check_format(file);
-  const GroupHandle entry = open_group(file.get(), "entry");
+  const auto [file, entry] = open_entry(given, path);
   const Record back = facts_in(entry.get());
   if (back.header.board.quantity != record.header.board.quantity) throw HdfError("holds another quantity");
   if (back.header.board.second != record.header.board.second) throw HdfError("holds another second channel");
