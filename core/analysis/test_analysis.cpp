@@ -221,19 +221,19 @@ TestResults TestAnalysis::finish() {
   const auto policy_of = [](bool on_a_thread) {
     return on_a_thread ? std::launch::async | std::launch::deferred : std::launch::deferred;
   };
-  const auto detect_beside = [&](detect::EstimatorTier estimator, bool on_a_thread) {
+  const auto detection_by = [&](detect::EstimatorTier estimator) {
     detect::LiveSettings live = live_settings(settings_);
     live.estimator = estimator;
     const auto scans = std::make_shared<const Scans>(
         Scans{indices_.view(), coefficients_.view(), saturated_.view(), gaps_, settings_.scratch_folder});
-    const auto task = [live, scans] { return detected(live, *scans); };
-    return std::async(policy_of(on_a_thread), task);
+    return [live, scans] { return detected(live, *scans); };
   };
   std::future<base::LongColumn<detect::LiveCycle>> detection;
   if (settings_.live) {
     end_live();
   } else {
-    detection = detect_beside(settings_.estimator, true);
+    const auto task = detection_by(settings_.estimator);
+    detection = std::async(policy_of(true), task);
   }
   const auto end_detection = [&] {
     if (!detection.valid()) return;
@@ -304,12 +304,20 @@ TestResults TestAnalysis::finish() {
     const std::string why_no_K = slack.count > 0 ? why_slack(slack.count, slips.size()) : "";
     const bool mostly_slack = 2 * slack.count > slips.size();
     if (!fits_whole_test()) end_detection();
-    // Seen once more by turning points: a long test that is fitted nearly always asks for them.
-    auto turning_points = detect_beside(detect::EstimatorTier::kTurningPoints, !settings_.live && is_fitted);
+    // Seen once more, by turning points: beside the fits from where they are known to be needed.
+    std::future<base::LongColumn<detect::LiveCycle>> seen_again;
+    const auto see_again = [&] {
+      const auto task = detection_by(detect::EstimatorTier::kTurningPoints);
+      seen_again = std::async(policy_of(!settings_.live), task);
+    };
+    const auto turning_points = [&] {
+      if (!seen_again.valid()) see_again();
+      return seen_again.get();
+    };
     TestEstimates estimates =
-        is_fitted ? estimate(trace, slips, sigma)
+        is_fitted ? estimate(trace, slips, sigma, see_again)
         : slack.count > 0
-            ? by_turning_points(trace, slips, turning_points.get(), why_no_K, mostly_slack ? Slack{} : slack)
+            ? by_turning_points(trace, slips, turning_points(), why_no_K, mostly_slack ? Slack{} : slack)
             : by_turning_points(
                   trace, slips, live_cycles_,
                   fmt::format(
@@ -320,7 +328,7 @@ TestResults TestAnalysis::finish() {
     } else if (!estimates.model_describes) {
       const std::string why = estimates.results.delta_mu.reason;
       const TestEstimates fitted = std::move(estimates);
-      estimates = by_turning_points(trace, slips, turning_points.get(), why);
+      estimates = by_turning_points(trace, slips, turning_points(), why);
       estimates.model_describes = false;
       estimates.misfit = fitted.misfit;
       add_distance_to_fits(fitted.cycles, estimates.results);
@@ -333,7 +341,7 @@ TestResults TestAnalysis::finish() {
     }
     if (fits_whole_test() && estimates.model_describes && estimates.misfit.is_significant() &&
         trace.belt.is_constant()) {
-      add_distance(by_turning_points(trace, slips, turning_points.get(), {}).results, estimates.results);
+      add_distance(by_turning_points(trace, slips, turning_points(), {}).results, estimates.results);
       if (estimates.misfit.is_certain())
         base::add(results.findings, misfit_finding(estimates.misfit, estimates.results));
     }
@@ -481,7 +489,7 @@ SectionSettings TestAnalysis::section_settings() const {
 }
 
 TestEstimates TestAnalysis::estimate(estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
-                                     double sigma) {
+                                     double sigma, const std::function<void()>& not_enough) {
   // Where the speed changes, the mean of a cycle does so too, without any drift of the paper.
   if (!settings_.skipped.drift && trace.belt.is_constant()) trace.drift = significant_drift(trace, slips);
   trace.belt.take_off_drift(trace.drift.rate_per_s);
@@ -490,6 +498,7 @@ TestEstimates TestAnalysis::estimate(estimate::Trace& trace, const base::LongCol
   };
   TestEstimates alone = estimates({});
   if (alone.model_describes) tester_ = alone.tester;
+  if (!alone.model_describes || alone.misfit.is_significant()) not_enough();
   const auto held = [&](const estimate::SharedPrior& prior) {
     TestEstimates with = estimates(prior);
     with.rung = Rung::kTwoParameterLaw;
