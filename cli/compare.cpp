@@ -49,8 +49,8 @@ Result<std::string> run_compare(const CompareOptions& options) {
   const auto side = [&](const char* letter, const std::string& label, const std::string& batch,
                         const std::vector<std::string>& files) -> Result<report::Material> {
     Result<report::Material> own =
-        batches ? report::read_batch(label, batch, options.a.front(), with_traces, *pooling)
-                : report::read_material(label.empty() ? letter : label, files, with_traces, *pooling);
+        batches ? report::read_batch(label, batch, options.a.front(), detail_of(options), *pooling)
+                : report::read_material(label.empty() ? letter : label, files, detail_of(options), *pooling);
     if (!own) return own;
     if (auto one = report::check_one_grade(*own, letter); !one) return tl::unexpected(one.error());
     return own;

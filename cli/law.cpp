@@ -349,7 +349,8 @@ Result<std::string> run_law(const LawOptions& options) {
   }
   const Result<analysis::Pooling> pooling = report::pooling_from_text(options.pool, "--pool");
   if (!pooling) return tl::unexpected(pooling.error());
-  Result<report::Material> material = report::read_material("", options.files, false, *pooling);
+  Result<report::Material> material =
+      report::read_material("", options.files, report::Detail::kResults, *pooling);
   if (!material) return tl::unexpected(material.error());
   if (auto one = report::check_one_grade(*material, "law"); !one) return tl::unexpected(one.error());
   report::note_repeated_scans({&*material});

@@ -36,8 +36,8 @@ Result<std::string> run_report(const ReportOptions& options) {
   if (!charts) return tl::unexpected(charts.error());
   Result<report::Material> material =
       options.batch.empty()
-          ? report::read_material("", options.files, with_traces, *pooling)
-          : report::read_batch("", options.batch, options.files.front(), with_traces, *pooling);
+          ? report::read_material("", options.files, detail_of(options), *pooling)
+          : report::read_batch("", options.batch, options.files.front(), detail_of(options), *pooling);
   if (!material) return tl::unexpected(material.error());
   report::note_repeated_scans({&*material});
   return deliver(options, {.csv = [&] { return report::report_csv(*material); },

@@ -16,6 +16,11 @@ constexpr const char* kStandardOutput = "-";
 
 }  // namespace
 
+report::Detail detail_of(const ReportOutputs& outputs) noexcept {
+  if (!outputs.page.empty()) return report::Detail::kTraces;
+  return outputs.json || !outputs.csv.empty() ? report::Detail::kResults : report::Detail::kTables;
+}
+
 void add_report_outputs(CLI::App& command, ReportOutputs& outputs) {
   command
       .add_option("-o,--output", outputs.page,

@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "report/test_report.hpp"
 #include <CLI/CLI.hpp>
 
 #include "core/base/result.hpp"
@@ -16,6 +17,9 @@ struct ReportOutputs {
   std::string page;  ///< HTML file to make; likewise.
   bool json = false;
 };
+
+/// What they need of the records.
+[[nodiscard]] report::Detail detail_of(const ReportOutputs& outputs) noexcept;
 
 void add_report_outputs(CLI::App& command, ReportOutputs& outputs);
 

@@ -9,6 +9,7 @@
 #include "report/trace_json.hpp"
 #include <nlohmann/json.hpp>
 
+#include "core/analysis/quantities.hpp"
 #include "core/analysis/skipped_corrections.hpp"
 #include "core/base/digits.hpp"
 #include "core/base/wording.hpp"
@@ -31,10 +32,22 @@ std::string names_of(const daemon::BatchBook& book) {
   return text.empty() ? "none" : base::one_line(text, 400);
 }
 
+/// Names of the compared quantities, and of what budgets, holds and changing speeds need.
+std::vector<std::string> results_of_tables() {
+  std::vector<std::string> names{
+      "smallest_slip", "pull_speed_measured",   "drift_rate", "omega", "Q", "delta_mu_scatter",
+      "escape_speed",  "escape_speed_corrected"};
+  for (const analysis::Quantity& quantity : analysis::quantities()) names.emplace_back(quantity.name);
+  return names;
+}
+
 }  // namespace
 
-base::Result<Material> read_material(std::string label, std::span<const std::string> files, bool with_traces,
+base::Result<Material> read_material(std::string label, std::span<const std::string> files, Detail detail,
                                      analysis::Pooling pooling) {
+  const std::vector<std::string> only =
+      detail == Detail::kTables ? results_of_tables() : std::vector<std::string>{};
+  const bool with_traces = detail == Detail::kTraces;
   Material material;
   material.label = std::move(label);
   material.pooling = pooling;
@@ -49,7 +62,7 @@ base::Result<Material> read_material(std::string label, std::span<const std::str
     }
     const std::span<const std::string> next = files.subspan(i + 1);
     base::Result<record::Record> record =
-        with_traces ? record::read_record_apart(file, next) : record::read_results_apart(file, next);
+        with_traces ? record::read_record_apart(file, next) : record::read_results_apart(file, only, next);
     if (!record) return tl::unexpected(record.error());
     const record::TesterFacts& tester = record->header.tester;
     ReportedTest test;
@@ -102,7 +115,7 @@ base::Result<Material> read_material(std::string label, std::span<const std::str
 }
 
 base::Result<Material> read_batch(std::string label, const std::string& id_or_name,
-                                  const std::filesystem::path& folder, bool with_traces,
+                                  const std::filesystem::path& folder, Detail detail,
                                   analysis::Pooling pooling) {
   daemon::BatchBook book;
   daemon::BatchJournal journal{folder};
@@ -116,7 +129,7 @@ base::Result<Material> read_batch(std::string label, const std::string& id_or_na
   for (const daemon::BatchTest& test : batch->tests) files.push_back((folder / test.record).string());
   if (files.empty()) return base::usage_error("batch {} has no test yet", batch->id);
   if (label.empty()) label = batch->plan.sample.name.empty() ? batch->id : batch->plan.sample.name;
-  base::Result<Material> material = read_material(std::move(label), files, with_traces, pooling);
+  base::Result<Material> material = read_material(std::move(label), files, detail, pooling);
   if (!material) return material;
   for (const auto& [quantity, limits] : batch->plan.limits)
     material->limits.push_back(daemon::judged(quantity, limits, material->measured));

@@ -4,6 +4,7 @@
 /// Reports as text, JSON, CSV and page are made from this.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <initializer_list>
 #include <optional>
@@ -55,17 +56,24 @@ struct Material {
   analysis::Pooling pooling;
 };
 
+/// What is read of a record; each has what those before it have.
+enum class Detail : std::uint8_t {
+  kTables,   ///< The results that the tables of texts are made of; the others are absent.
+  kResults,  ///< All results.
+  kTraces,   ///< Fills ReportedTest::trace.
+};
+
 /// Reads records; the results are those in the files, not computed again. Void tests are listed and not read.
-/// \param with_traces  true: fills ReportedTest::trace. \param pooling  of the groups. Errors: that of the
-/// first file that cannot be read, with its name; kUsage if all tests are void.
+/// \param pooling  of the groups. Errors: that of the first file that cannot be read, with its name; kUsage
+/// if all tests are void.
 [[nodiscard]] base::Result<Material> read_material(std::string label, std::span<const std::string> files,
-                                                   bool with_traces, analysis::Pooling pooling);
+                                                   Detail detail, analysis::Pooling pooling);
 
 /// Reads the tests of a batch and checks its limits. \param label  empty: the batch's name. \param id_or_name
 /// as for BatchBook::find(). \param folder  the record folder. Errors: as read_material(); kUsage if there is
 /// no such batch or it has no test.
 [[nodiscard]] base::Result<Material> read_batch(std::string label, const std::string& id_or_name,
-                                                const std::filesystem::path& folder, bool with_traces,
+                                                const std::filesystem::path& folder, Detail detail,
                                                 analysis::Pooling pooling);
 
 /// "Thorold, 12 in/min, ring-down": what the tests of a group have in common, and what is pooled.

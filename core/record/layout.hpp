@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "core/daq/calibration.hpp"
@@ -63,7 +64,8 @@ void check_tables(hid_t entry);
 inline constexpr const char* kDiagnostics = "diagnostics";
 
 void write_results(hid_t entry, const analysis::TestResults& results);
-[[nodiscard]] analysis::TestResults read_results(hid_t entry);
+/// \param only  names of those to be read; empty: all.
+[[nodiscard]] analysis::TestResults read_results(hid_t entry, std::span<const std::string> only = {});
 
 void write_instrument(hid_t entry, const Record& record);  ///< Also timing, sample, user, plan, self-check.
 void read_instrument(hid_t entry, Record& record);

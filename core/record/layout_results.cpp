@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -147,7 +148,7 @@ void write_results(hid_t entry, const analysis::TestResults& results) {
   write_finding_rows(entry, results.findings);
 }
 
-analysis::TestResults read_results(hid_t entry) {
+analysis::TestResults read_results(hid_t entry, std::span<const std::string> only) {
   if (!has(entry, "results")) return absent_results("the record holds no results");
   const GroupHandle group = open_group(entry, "results");
   analysis::TestResults results;
@@ -165,6 +166,10 @@ analysis::TestResults read_results(hid_t entry) {
   analysis::for_each_result(results, [&](const analysis::ResultName& name, analysis::Estimate& estimate) {
     const std::string key{name.name};
     const bool came_later = std::exchange(may_be_missing, may_be_missing || name.name == kLastOfTheFirst);
+    if (!only.empty() && std::ranges::find(only, key) == only.end()) {
+      estimate = analysis::Estimate::none("not read");
+      return;
+    }
     const hid_t parent = name.is_diagnostic && diagnostics ? diagnostics->get() : group.get();
     estimate = came_later && !has(parent, key) ? analysis::Estimate::none(std::string{kNoSuchResultThen})
                                                : read_estimate(parent, key);

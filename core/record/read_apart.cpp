@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "core/base/regular_file.hpp"
 #include "core/record/entry_builder.hpp"
@@ -125,7 +128,8 @@ Apart& apart() {
 /// Of one thread: while one record is worked on, both read those that will be asked for next.
 class PairOfReaders {
  public:
-  explicit PairOfReaders(std::string_view option) : readings_{reading(option), reading(option)} {}
+  /// \param words  of the reader's command line: its option, and what follows it.
+  explicit PairOfReaders(const std::vector<std::string>& words) : readings_{reading(words), reading(words)} {}
 
   base::Result<Record> read(const std::string& path, std::span<const std::string> next) {
     std::size_t own = readings_[0].path == path ? 0 : 1;
@@ -162,8 +166,8 @@ class PairOfReaders {
     static_cast<void>(begin(reading, path));
   }
 
-  static Reading reading(std::string_view option) {
-    return {ApartReader{base::LimitedChild{base::ChildProgram{"/proc/self/exe", {std::string{option}}}}}, {}};
+  static Reading reading(const std::vector<std::string>& words) {
+    return {ApartReader{base::LimitedChild{base::ChildProgram{"/proc/self/exe", words}}}, {}};
   }
 
   std::array<Reading, 2> readings_;
@@ -219,8 +223,9 @@ std::string read_for_parent(std::string_view path, int memory_file) {
   return answer_with(read_record(path), memory_file);
 }
 
-std::string read_results_for_parent(std::string_view path, int memory_file) {
-  return answer_with(read_without_scans(path), memory_file);
+std::string read_results_for_parent(std::string_view path, std::span<const std::string> only,
+                                    int memory_file) {
+  return answer_with(read_without_scans(path, only), memory_file);
 }
 
 std::string read_facts_for_parent(std::string_view path, int memory_file) {
@@ -228,9 +233,15 @@ std::string read_facts_for_parent(std::string_view path, int memory_file) {
 }
 
 void serve_if_reader(int count, char** arguments) {
+  if (count < 2) return;
+  if (arguments[1] == kResultsReaderOption) {
+    base::answer_questions([only = std::vector<std::string>(arguments + 2, arguments + count)](
+                               std::string_view path, int memory_file) {
+      return read_results_for_parent(path, only, memory_file);
+    });
+  }
   if (count != 2) return;
   if (arguments[1] == kReaderOption) base::answer_questions(read_for_parent);
-  if (arguments[1] == kResultsReaderOption) base::answer_questions(read_results_for_parent);
   if (arguments[1] == kFactsReaderOption) base::answer_questions(read_facts_for_parent);
 }
 
@@ -238,19 +249,22 @@ void read_records_apart(std::function<bool()> given_up) { apart() = {true, std::
 
 base::Result<Record> read_record_apart(const std::string& path, std::span<const std::string> next) {
   if (!apart().wanted) return read_record(path);
-  thread_local PairOfReaders readers{kReaderOption};
+  thread_local PairOfReaders readers{{std::string{kReaderOption}}};
   return readers.read(path, next);
 }
 
-base::Result<Record> read_results_apart(const std::string& path, std::span<const std::string> next) {
-  if (!apart().wanted) return read_without_scans(path);
-  thread_local PairOfReaders readers{kResultsReaderOption};
-  return readers.read(path, next);
+base::Result<Record> read_results_apart(const std::string& path, std::span<const std::string> only,
+                                        std::span<const std::string> next) {
+  if (!apart().wanted) return read_without_scans(path, only);
+  std::vector<std::string> words{std::string{kResultsReaderOption}};
+  words.insert(words.end(), only.begin(), only.end());
+  thread_local std::map<std::vector<std::string>, PairOfReaders> readers;
+  return readers.try_emplace(words, words).first->second.read(path, next);
 }
 
 base::Result<Record> read_facts_apart(const std::string& path, std::span<const std::string> next) {
   if (!apart().wanted) return read_facts(path);
-  thread_local PairOfReaders readers{kFactsReaderOption};
+  thread_local PairOfReaders readers{{std::string{kFactsReaderOption}}};
   return readers.read(path, next);
 }
 

@@ -23,7 +23,7 @@ namespace stickslip::record {
 
 /// Of this program as such a child.
 inline constexpr std::string_view kReaderOption = "--read-files";
-inline constexpr std::string_view kResultsReaderOption = "--read-results";
+inline constexpr std::string_view kResultsReaderOption = "--read-results";  ///< Names of results follow.
 inline constexpr std::string_view kFactsReaderOption = "--read-facts";
 
 /// A child that reads one record after the other. Thread-bound.
@@ -50,7 +50,8 @@ class ApartReader {
 /// A ChildWork: reads the record of that path into the memory file, as a journal.
 [[nodiscard]] std::string read_for_parent(std::string_view path, int memory_file);
 /// The same with read_without_scans().
-[[nodiscard]] std::string read_results_for_parent(std::string_view path, int memory_file);
+[[nodiscard]] std::string read_results_for_parent(std::string_view path, std::span<const std::string> only,
+                                                  int memory_file);
 /// The same with read_facts().
 [[nodiscard]] std::string read_facts_for_parent(std::string_view path, int memory_file);
 
@@ -72,6 +73,7 @@ void read_records_apart(std::function<bool()> given_up = {});
 
 /// As read_record_apart(), with read_without_scans().
 [[nodiscard]] base::Result<Record> read_results_apart(const std::string& path,
+                                                      std::span<const std::string> only = {},
                                                       std::span<const std::string> next = {});
 
 /// As read_record_apart(), with read_facts().

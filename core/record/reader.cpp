@@ -67,14 +67,14 @@ void check_facts(const Record& record) {
 }
 
 /// All but the columns.
-Record facts_in(hid_t entry) {
+Record facts_in(hid_t entry, std::span<const std::string> only_results = {}) {
   Record record;
   record.end.emplace();
   read_quantity(entry, record.header.board);
   read_identity(entry, record);
   read_instrument(entry, record);
   read_second_channel(entry, record);
-  record.end->results = read_results(entry);
+  record.end->results = read_results(entry, only_results);
   read_process(entry, record);
   return record;
 }
@@ -99,9 +99,10 @@ Record read_whole(const GivenFile& given, const std::filesystem::path& path) {
   return record;
 }
 
-Record read_shortened(const GivenFile& given, const std::filesystem::path& path) {
+Record read_shortened(const GivenFile& given, const std::filesystem::path& path,
+                      std::span<const std::string> only_results) {
   const auto [file, entry] = open_entry(given, path);
-  Record record = facts_in(entry.get());
+  Record record = facts_in(entry.get(), only_results);
   read_raw_values(entry.get(), record);
   check_facts(record);
   record.raw.clear();
@@ -126,8 +127,8 @@ base::Error of_file(const std::filesystem::path& path, const base::Error& error)
   return {error.kind, fmt::format("{}: {}", path.string(), error.message)};
 }
 
-base::Result<Record> read_by(Record (*read)(const GivenFile&, const std::filesystem::path&),
-                             const std::filesystem::path& path, const FileCalls& calls) {
+template <typename Read>
+base::Result<Record> read_by(const Read& read, const std::filesystem::path& path, const FileCalls& calls) {
   const auto given = open_shared(path, calls);
   if (!given) return tl::unexpected(of_file(path, given.error()));
   try {
@@ -145,8 +146,12 @@ base::Result<Record> read_record(const std::filesystem::path& path, const FileCa
   return read_by(read_whole, path, calls);
 }
 
-base::Result<Record> read_without_scans(const std::filesystem::path& path, const FileCalls& calls) {
-  return read_by(read_shortened, path, calls);
+base::Result<Record> read_without_scans(const std::filesystem::path& path, std::span<const std::string> only,
+                                        const FileCalls& calls) {
+  const auto read = [only](const GivenFile& given, const std::filesystem::path& file) {
+    return read_shortened(given, file, only);
+  };
+  return read_by(read, path, calls);
 }
 
 base::Result<Record> read_facts(const std::filesystem::path& path, const FileCalls& calls) {

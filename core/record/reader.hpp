@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
+#include <string>
 
 #include "core/base/result.hpp"
 #include "core/record/file_calls.hpp"
@@ -22,7 +24,9 @@ namespace stickslip::record {
 /// Reads a record whose scans (with what stands beside them: second channel, spikes, noise-free force), gaps,
 /// events, and cycles and modes of the truth stay empty. The raw values are compared with their checksum.
 /// Errors as read_record(), but damage in what is not read is not found.
+/// \param only  names of the results to read, the others are absent; empty: all.
 [[nodiscard]] base::Result<Record> read_without_scans(const std::filesystem::path& path,
+                                                      std::span<const std::string> only = {},
                                                       const FileCalls& calls = system_calls());
 
 /// Reads a record without its columns: scans, cycles, gaps, events and truth stay empty. The raw values are

@@ -289,6 +289,21 @@ class Reports(Folder):
         self.assertIn("k = 4.30 for n = 3, 2.78 for n = 5", text)
         self.assertIn("static µs: ISO 8295 µS; kinetic (dynamic) µk\nmodel quantities: S, K, S−K", text)
 
+    def test_text_is_the_same_whichever_other_forms_are_asked_for(self):
+        records = [self.simulate(f"form-{scene}.h5", scene, "12 in/min", 5, *options) for scene, *options in (
+            (STICKS,), (RINGS,), ("contact-ageing",), ("rate-and-state-ageing",), ("too-few-scans",), ("slack",),
+            ("threshold-oscillation",), ("stribeck", "--set", "effects.white_noise.sd=0.2"))]
+        for scene in ("slide-hold-slide", "speed-ramp"):
+            self.good("simulate", scene, "-o", f"form-{scene}.h5")
+            records.append(f"form-{scene}.h5")
+        for words in (["report", *records], *(["report", record] for record in records),
+                      ["report", *records, "--pool", "grades,regimes"], ["compare", *records[:5], "--", *records[5:]]):
+            with self.subTest(words):
+                text = self.good(*words)
+                beside = self.good(*words[:1], "--csv", "form.csv", *words[1:])
+                (self.folder / "form.csv").unlink()
+                self.assertEqual(beside, text)
+
     def test_means_fit_a_terminal_of_80_columns(self):
         text = self.good("report", *self.a, *self.b)
         means = text[text.index("Means, ± half"):].splitlines()

@@ -191,7 +191,7 @@ TEST_F(EveryOutput, TextAndJsonOfTheCommandLine) {
 }
 
 TEST_F(EveryOutput, Report) {
-  auto material = report::read_material("", std::vector{published()}, true, {});
+  auto material = report::read_material("", std::vector{published()}, report::Detail::kTraces, {});
   ASSERT_TRUE(material) << material.error().message;
   expect_all_in(report::report_text(*material), "text");
   expect_all_of(report::report_json(*material).at("tests").at(0), "JSON");

@@ -187,13 +187,35 @@ TEST(ReadApart, ResultsAreThoseOfTheWholeRecordWithoutItsScans) {
       expected.end->truth->cycles.clear();
     }
     ASSERT_EQ(expected.cycles.size(), sample.cycles.size());
-    ApartReader reader{LimitedChild{read_results_for_parent}};
+    const auto work = [](std::string_view file, int memory_file) {
+      return read_results_for_parent(file, {}, memory_file);
+    };
+    ApartReader reader{LimitedChild{work}};
     for (const auto& results : {read_results_apart(path), reader.read(path, kEnough)}) {
       ASSERT_TRUE(results) << results.error().message;
       test::expect_same_record(*results, expected);
       EXPECT_EQ(results->sha256, expected.sha256);
     }
   }
+}
+
+TEST(ReadApart, OfTheResultsThoseThatAreNamedAreRead) {
+  const test::TemporaryFolder folder;
+  const auto path = folder / "1.h5";
+  ASSERT_TRUE(publish_record(test::whole_record(), path));
+  const auto whole = read_record(path);
+  ASSERT_TRUE(whole) << whole.error().message;
+  const std::vector<std::string> only{"mu_s", "omega"};
+  const auto read = read_results_apart(path, only);
+  ASSERT_TRUE(read) << read.error().message;
+  const auto expected = [&] {
+    analysis::TestResults results = whole->end->results;
+    analysis::for_each_result(results, [&](const analysis::ResultName& name, analysis::Estimate& estimate) {
+      if (std::ranges::find(only, name.name) == only.end()) estimate = analysis::Estimate::none("not read");
+    });
+    return results;
+  }();
+  EXPECT_EQ(read->end->results, expected);
 }
 
 TEST(ReadApart, InTurnGivesTheNamedFileOfAListUpToTheLast) {
