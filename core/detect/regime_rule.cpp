@@ -69,17 +69,21 @@ RegimeVerdict judge_regime(std::size_t slip_count, const base::LongColumn<double
   if (log_likelihood_ratios.empty()) return undecided("one slip: nothing after it tells how it ended");
   const bool refuted = description == Description::kRefuted;
   const double largest = refuted ? kLargestDoubtfulRatio : std::numeric_limits<double>::infinity();
+  const auto told = static_cast<std::size_t>(
+      std::count_if(log_likelihood_ratios.begin(), log_likelihood_ratios.end(),
+                    [](double ratio) { return ratio != 0.0; }));  // Else it says nothing.
+  // A change may be at any of the slips: chance alone makes the likeliest of them look like one.
+  const double change = refuted ? kChange : std::log(static_cast<double>(told));
   Courses courses;
   std::size_t captured = 0;  // Each slip by itself.
   std::size_t slip = 0;
   for (const double ratio : log_likelihood_ratios) {
-    if (ratio != 0.0) {  // Else it says nothing.
-      courses.add(slip, std::clamp(ratio, -largest, largest), refuted ? kChange : 0.0);
+    if (ratio != 0.0) {
+      courses.add(slip, std::clamp(ratio, -largest, largest), change);
       if (ratio > 0.0) ++captured;
     }
     ++slip;
   }
-  const std::size_t told = courses.count;
   if (told == 0) return undecided("no slip tells how it ended");
   if (description == Description::kDoubtful && captured != 0 && captured != told) {
     return undecided(

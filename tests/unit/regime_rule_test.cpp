@@ -60,11 +60,27 @@ TEST(RegimeRule, TwentyTimesAsLikelyDecides) {
 }
 
 TEST(RegimeRule, WeakestSlipDecidesBetweenPureAndMixed) {
-  // Three times captured, once in doubt: pure against mixed differ by that one.
-  EXPECT_EQ(regime_of({50.0, 50.0, 50.0, 1.0}), Regime::kUndecided);
-  EXPECT_EQ(regime_of({50.0, 50.0, 50.0, 4.0}), Regime::kStickSlip);
-  EXPECT_EQ(regime_of({50.0, 50.0, 50.0, -1.0}), Regime::kUndecided);
-  EXPECT_EQ(regime_of({50.0, 50.0, 50.0, -4.0}), Regime::kMixed);
+  // Three times captured, once in doubt: pure against mixed differ by that one, and by ln 4 for the place of
+  // the change.
+  const double decisive = std::log(detect::kDecisiveLikelihoodRatio);
+  const double place = std::log(4.0);
+  EXPECT_EQ(regime_of({50.0, 50.0, 50.0, decisive - place - 1e-9}), Regime::kUndecided);
+  EXPECT_EQ(regime_of({50.0, 50.0, 50.0, decisive - place + 1e-9}), Regime::kStickSlip);
+  EXPECT_EQ(regime_of({50.0, 50.0, 50.0, -decisive - place + 1e-9}), Regime::kUndecided);
+  EXPECT_EQ(regime_of({50.0, 50.0, 50.0, -decisive - place - 1e-9}), Regime::kMixed);
+}
+
+// Of many slips chance makes one look otherwise: by ten to one in one of eleven.
+TEST(RegimeRule, OneSlipOfManyThatLooksOtherwiseIsChance) {
+  std::vector<double> ratios(86, 5.0);
+  ratios[40] = -std::log(10.0);
+  EXPECT_EQ(regime_of(ratios), Regime::kStickSlip);
+  EXPECT_EQ(detect::judge_regime(87, ratios, Description::kFits).captured, 86U);
+  for (double& ratio : ratios) ratio = -ratio;
+  EXPECT_EQ(regime_of(ratios), Regime::kRingDown);
+  // It begins and ends in one of 86 places each.
+  ratios[40] = 2.0 * std::log(86.0) + std::log(detect::kDecisiveLikelihoodRatio) + 1e-9;
+  EXPECT_EQ(regime_of(ratios), Regime::kMixed);
 }
 
 TEST(RegimeRule, WithoutAModelAFewSlipsAmongManyDoNotMakeATestMixed) {
