@@ -32,10 +32,10 @@ std::string names_of(const daemon::BatchBook& book) {
   return text.empty() ? "none" : base::one_line(text, 400);
 }
 
-/// Names of the compared quantities, and of what budgets, holds and changing speeds need.
+/// Names of the compared quantities, and of what budgets and changing speeds need.
 std::vector<std::string> results_of_tables() {
   std::vector<std::string> names{
-      "smallest_slip", "pull_speed_measured",   "drift_rate", "omega", "Q", "delta_mu_scatter",
+      "smallest_slip", "pull_speed_measured",   "drift_rate", "Q", "delta_mu_scatter",
       "escape_speed",  "escape_speed_corrected"};
   for (const analysis::Quantity& quantity : analysis::quantities()) names.emplace_back(quantity.name);
   return names;
@@ -100,9 +100,11 @@ base::Result<Material> read_material(std::string label, std::span<const std::str
                                     test.sample.grade,
                                     analysis::mean_stick_time_s(record->cycles, skipped.first_slip),
                                     budget_facts_of(record->header)};
-    const std::vector<analysis::RestedSlip> rested = analysis::rested_slips(record->cycles);
-    measured.speed_changes = !measured.results.Q.value && analysis::have_several_speeds(rested);
-    measured.rests = analysis::group_by_rest(rested, measured.results);
+    if (detail != Detail::kTables) {
+      const std::vector<analysis::RestedSlip> rested = analysis::rested_slips(record->cycles);
+      measured.speed_changes = !measured.results.Q.value && analysis::have_several_speeds(rested);
+      measured.rests = analysis::group_by_rest(rested, measured.results);
+    }
     material.measured.push_back(std::move(measured));
     material.tests.push_back(std::move(test));
   }
@@ -129,6 +131,8 @@ base::Result<Material> read_batch(std::string label, const std::string& id_or_na
   for (const daemon::BatchTest& test : batch->tests) files.push_back((folder / test.record).string());
   if (files.empty()) return base::usage_error("batch {} has no test yet", batch->id);
   if (label.empty()) label = batch->plan.sample.name.empty() ? batch->id : batch->plan.sample.name;
+  // A limit may be one of any result.
+  if (!batch->plan.limits.empty()) detail = std::max(detail, Detail::kResults);
   base::Result<Material> material = read_material(std::move(label), files, detail, pooling);
   if (!material) return material;
   for (const auto& [quantity, limits] : batch->plan.limits)

@@ -58,7 +58,7 @@ struct Material {
 
 /// What is read of a record; each has what those before it have.
 enum class Detail : std::uint8_t {
-  kTables,   ///< The results that the tables of texts are made of; the others are absent.
+  kTables,   ///< The results that the tables of texts are made of; the others, rests among them, are absent.
   kResults,  ///< All results.
   kTraces,   ///< Fills ReportedTest::trace.
 };

@@ -304,15 +304,14 @@ TestResults TestAnalysis::finish() {
     const std::string why_no_K = slack.count > 0 ? why_slack(slack.count, slips.size()) : "";
     const bool mostly_slack = 2 * slack.count > slips.size();
     if (!fits_whole_test()) end_detection();
-    // Seen once more, by turning points: beside the fits from where they are known to be needed.
+    // Seen once more, by turning points: beside the fits from where they are likely to be needed.
     std::future<base::LongColumn<detect::LiveCycle>> seen_again;
     const auto see_again = [&] {
       const auto task = detection_by(detect::EstimatorTier::kTurningPoints);
       seen_again = std::async(policy_of(!settings_.live), task);
     };
     const auto turning_points = [&] {
-      if (!seen_again.valid()) see_again();
-      return seen_again.get();
+      return seen_again.valid() ? seen_again.get() : detection_by(detect::EstimatorTier::kTurningPoints)();
     };
     TestEstimates estimates =
         is_fitted ? estimate(trace, slips, sigma, see_again)
@@ -498,7 +497,7 @@ TestEstimates TestAnalysis::estimate(estimate::Trace& trace, const base::LongCol
   };
   TestEstimates alone = estimates({});
   if (alone.model_describes) tester_ = alone.tester;
-  if (!alone.model_describes || alone.misfit.is_significant()) not_enough();
+  if (!alone.model_describes || (alone.misfit.is_significant() && trace.belt.is_constant())) not_enough();
   const auto held = [&](const estimate::SharedPrior& prior) {
     TestEstimates with = estimates(prior);
     with.rung = Rung::kTwoParameterLaw;

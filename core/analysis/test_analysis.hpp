@@ -151,7 +151,7 @@ class TestAnalysis {
   /// From the highest rung of the fit that describes the test, after taking off the drift; if the test is not
   /// described, what its fit left. With a characterised tester γ is the tester's, unless the test alone
   /// contradicts it. Fills tester_ and tester_check_.
-  /// \param not_enough  called as soon as the fit is known to need turning points beside it.
+  /// \param not_enough  called as soon as the fit is likely to need turning points beside it.
   [[nodiscard]] TestEstimates estimate(estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
                                        double sigma, const std::function<void()>& not_enough);
   /// Estimates from cycles with turning points. \param reason  why no results of a fit are there.

@@ -72,8 +72,9 @@ RegimeVerdict judge_regime(std::size_t slip_count, const base::LongColumn<double
   const auto told = static_cast<std::size_t>(
       std::count_if(log_likelihood_ratios.begin(), log_likelihood_ratios.end(),
                     [](double ratio) { return ratio != 0.0; }));  // Else it says nothing.
-  // A change may be at any of the slips: chance alone makes the likeliest of them look like one.
-  const double change = refuted ? kChange : std::log(static_cast<double>(told));
+  // A change may be between any two slips: of so many places chance alone makes the likeliest look like one.
+  const double place = std::log(std::max(static_cast<double>(told) - 1.0, 1.0));
+  const double change = refuted ? std::max(kChange, place) : place;
   Courses courses;
   std::size_t captured = 0;  // Each slip by itself.
   std::size_t slip = 0;

@@ -35,7 +35,10 @@ enum class Description {
 /// \param slip_count  slips of the test.
 /// \param log_likelihood_ratios  captured over free, one for each slip but the last.
 /// \param description  of the trace by the model on which the ratios rest. If it is refuted each ratio counts
-/// for little, and slips that end otherwise than their neighbours must outweigh the changes of behaviour.
+/// for little.
+///
+/// In a mixed course each change of behaviour costs ln(n − 1), n being the slips that tell: it may be between
+/// any two of them. If the model is refuted it costs ln 100 at least.
 [[nodiscard]] RegimeVerdict judge_regime(std::size_t slip_count,
                                          const base::LongColumn<double>& log_likelihood_ratios,
                                          Description description);

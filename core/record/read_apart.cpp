@@ -1,6 +1,8 @@
 #include "core/record/read_apart.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -233,7 +235,9 @@ std::string read_facts_for_parent(std::string_view path, int memory_file) {
 }
 
 void serve_if_reader(int count, char** arguments) {
-  if (count < 2) return;
+  // A parent asks through a socket; whoever types the option has none.
+  struct stat input {};
+  if (count < 2 || ::fstat(STDIN_FILENO, &input) != 0 || !S_ISSOCK(input.st_mode)) return;
   if (arguments[1] == kResultsReaderOption) {
     base::answer_questions([only = std::vector<std::string>(arguments + 2, arguments + count)](
                                std::string_view path, int memory_file) {

@@ -84,7 +84,7 @@ class Batch(unittest.TestCase):
 
     def test_a_batch_leads_over_a_kill_asks_again_for_what_was_voided_and_reports_the_rest(self):
         begun = self.run_cli("batch", "begin", "--name", "liner 42", "--grade", "kraft", "--replicates", "2", "--slides", "2",
-                             "--limit", "delta_mu=0.03:0.07", "--limit", "mu_k=:0.2")
+                             "--limit", "delta_mu=0.03:0.07", "--limit", "mu_k=:0.2", "--limit", "period_median=1 ms:10 s")
         self.assertIn("0 of 4 tests made\nnext: sheet 1, slide 1\n", begun)
         batch = self.batch()["id"]
         records = [self.measure(), self.measure()]
@@ -134,6 +134,8 @@ class Batch(unittest.TestCase):
         self.assertEqual((limits["mu_k"]["pass"], limits["mu_k"]["outside"]), (False, [0, 1, 2, 3]))
         self.assertEqual(report["groups"][0]["quantities"]["delta_mu"]["count"], 4)
         text = self.report("--batch", batch, folder, "-o", folder / "page.html", "--csv", folder / "table.csv")
+        self.assertEqual(self.report("--batch", batch, folder), text)
+        self.assertTrue(limits["period_median"]["pass"], report["limits"])
         self.assertIn("FAIL  mu_k – … 0.2: 0 of 4 inside; outside: test 1 2 3 4", text)
         self.assertIn("void, left out: paper torn (ada", text)
         self.assertIn("paper torn", (folder / "page.html").read_text(encoding="utf-8"))
