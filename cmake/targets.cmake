@@ -6,7 +6,7 @@ function(stickslip_library name)
     add_library(${name} STATIC ${ARG_SOURCES})
     target_link_libraries(${name} PUBLIC stickslip_flags ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
     stickslip_precompiled(${name} stickslip_library_headers)
-    if(ARG_BUNCH AND STICKSLIP_PRECOMPILED AND NOT STICKSLIP_SANITIZE)
+    if(ARG_BUNCH AND STICKSLIP_PRECOMPILED AND NOT STICKSLIP_BUILT_ONCE)
       set_target_properties(${name} PROPERTIES UNITY_BUILD_BATCH_SIZE ${ARG_BUNCH})
     endif()
     # What is generated stays alone: clang-tidy reads bunches before anything is built.

@@ -65,10 +65,10 @@ class RowSplitter {
   /// The next rows.
   Rows next() {
     constexpr std::size_t kMost = std::size_t{1} << 14U;
-    constexpr std::size_t kMostBytes = std::size_t{1} << 20U;
+    constexpr std::size_t kMostBytesAtOnce = std::size_t{1} << 20U;
     Rows rows;
     while (rows.rows.size() < kMost &&
-           rows.text.size() + rows.ends.size() * sizeof(std::size_t) < kMostBytes) {
+           rows.text.size() + rows.ends.size() * sizeof(std::size_t) < kMostBytesAtOnce) {
       const auto more = file_.next(line_);
       rows.is_end = !more || !*more;
       if (!more) rows.error = more.error();
