@@ -80,9 +80,8 @@ Record facts_in(hid_t entry, std::span<const std::string> only_results = {}) {
 }
 
 Record read_facts_of(const GivenFile& given, const std::filesystem::path& path) {
-  const FileHandle file = open_record(given, path);
-  check_format(file);
-  return facts_in(open_group(file.get(), "entry").get());
+  const auto [file, entry] = open_entry(given, path);
+  return facts_in(entry.get());
 }
 
 Record read_whole(const GivenFile& given, const std::filesystem::path& path) {
