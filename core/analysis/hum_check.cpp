@@ -70,7 +70,7 @@ Stretch look_at(const std::vector<double>& values, double scan_rate_Hz) {
 std::optional<Hum> hum_under_load(const estimate::Trace& trace, double scan_rate_Hz, double stretch_s,
                                   std::size_t fewest) {
   const base::LongColumn<double>& value = trace.value;
-  const double largest = *std::max_element(value.begin(), value.end());
+  const double largest = estimate::largest_value(trace);
   const auto scans = static_cast<std::size_t>(std::lround(stretch_s * scan_rate_Hz));
   std::vector<double> values;
   base::LongColumn<Stretch> stretches;

@@ -27,18 +27,17 @@ constexpr std::string_view kOfTheScans[] = {"spike_count", "gap_count", "lost_sc
 constexpr std::string_view kOfTheTimes[] = {"cycle_count", "period_median", "oscillation_frequency"};
 
 std::size_t loaded_scans(const estimate::Trace& trace) {
-  double largest = 0.0;
-  for (const double value : trace.value) largest = std::max(largest, value);
+  const double largest = estimate::largest_value(trace);
   return static_cast<std::size_t>(std::count_if(trace.value.begin(), trace.value.end(),
                                                 [&](double value) { return value >= 0.5 * largest; }));
 }
 
 /// How high the trace begins, over its largest scan, if that is in mid-pull and no noise about zero.
 std::optional<double> begin_under_load(const estimate::Trace& trace) {
-  const auto largest = std::max_element(trace.value.begin(), trace.value.end());
-  if (largest == trace.value.end() || !(*largest > 0.0) || !begins_under_load(trace)) return std::nullopt;
-  if (*largest < kLargestSigmas * signal::scan_noise(trace.value, 0.0)) return std::nullopt;
-  return trace.value.front() / *largest;
+  const double largest = estimate::largest_value(trace);
+  if (!(largest > 0.0) || !begins_under_load(trace)) return std::nullopt;
+  if (largest < kLargestSigmas * signal::scan_noise(trace.value, 0.0)) return std::nullopt;
+  return trace.value.front() / largest;
 }
 
 /// Which of both it is where the frozen value is the highest.

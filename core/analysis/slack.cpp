@@ -23,7 +23,7 @@ double unloaded_level(const estimate::Trace& trace) {
   constexpr std::size_t kFewest = 5;
   constexpr std::size_t kMost = 4096;
   if (begins_under_load(trace)) return 0.0;
-  const double limit = kLoaded * *std::max_element(trace.value.begin(), trace.value.end());
+  const double limit = kLoaded * estimate::largest_value(trace);
   std::vector<double> before;
   for (std::size_t k = 0; k < trace.size() && before.size() < kMost && trace.value[k] < limit; ++k)
     before.push_back(trace.value[k]);

@@ -28,7 +28,7 @@ Estimate mean_of(const estimate::Trace& trace, std::size_t first, std::size_t en
 /// Scans between the first and the last at or above half the largest: what is before is loading, what
 /// is after unloading.
 std::pair<std::size_t, std::size_t> loaded_part(const estimate::Trace& trace) {
-  const double half = 0.5 * *std::max_element(trace.value.begin(), trace.value.end());
+  const double half = 0.5 * estimate::largest_value(trace);
   const auto loaded = [half](double value) { return value >= half; };
   const auto first = std::find_if(trace.value.begin(), trace.value.end(), loaded);
   const auto last = std::find_if(trace.value.rbegin(), trace.value.rend(), loaded);
@@ -95,7 +95,7 @@ Estimate mean_force(const estimate::Trace& trace, const base::LongColumn<detect:
 }
 
 bool begins_under_load(const estimate::Trace& trace) {
-  const double half = 0.5 * *std::max_element(trace.value.begin(), trace.value.end());
+  const double half = 0.5 * estimate::largest_value(trace);
   const auto first = std::min<std::ptrdiff_t>(kFirstScans, static_cast<std::ptrdiff_t>(trace.size()));
   const auto loaded = std::count_if(trace.value.begin(), trace.value.begin() + first,
                                     [half](double value) { return value >= half; });

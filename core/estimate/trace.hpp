@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/base/long_column.hpp"
@@ -46,6 +47,13 @@ struct Trace {
     return {time_s.view(), value.view(), usable.view(), drift, belt, breaks, lost_s};
   }
 };
+
+/// Of all scans; −∞ without any. Each is read once, in order, unlike by std::max_element.
+[[nodiscard]] inline double largest_value(const Trace& trace) {
+  double largest = -std::numeric_limits<double>::infinity();
+  for (const double value : trace.value) largest = std::max(largest, value);
+  return largest;
+}
 
 /// A usable scan without the drift.
 struct TraceScan {

@@ -26,7 +26,7 @@ double run_length(double shift, double k, double h) {
 
 bool ControlChart::Arm::add(double score, double value, double spread) {
   if (height == 0.0) standard_deviation = spread;
-  height = std::max(0.0, height + score - kReferenceValue);
+  height = std::max(0.0, height + score);
   if (height > 0.0) {
     since.add(value);
   } else {
@@ -35,12 +35,28 @@ bool ControlChart::Arm::add(double score, double value, double spread) {
   return height > kDecisionInterval;
 }
 
-double ControlChart::score(double value) const {
+ControlChart::Scores ControlChart::scores(double value) const {
   const auto [first, end] = std::equal_range(sorted_.begin(), sorted_.end(), value);
+  const auto count = static_cast<double>(sorted_.size() + 1);
   const auto below = static_cast<double>(std::distance(sorted_.begin(), first));
-  const auto equal = static_cast<double>(std::distance(first, end)) + 1.0;
-  const double middle = below + 0.5 * equal;  // R − ½
-  return boost::math::quantile(boost::math::normal{}, middle / static_cast<double>(sorted_.size() + 1));
+  const auto above = static_cast<double>(std::distance(end, sorted_.end()));
+  const double own = count - below - above;
+  const boost::math::normal standard;
+  // One rank is as good as its middle. The whole cell would make more of the ends of a short baseline.
+  if (own == 1.0) {
+    const double z = quantile(standard, (below + 0.5) / count);
+    return {z - kReferenceValue, -z - kReferenceValue};
+  }
+  // Of the ranks below, and of those up to the own ones: the share after a shift.
+  const auto score = [&](double ranks_below, double ranks_above) {
+    constexpr double kShift = 2.0 * kReferenceValue;
+    const double from =
+        ranks_below == 0.0 ? 0.0 : cdf(standard, quantile(standard, ranks_below / count) - kShift);
+    const double to =
+        ranks_above == 0.0 ? 1.0 : cdf(standard, -quantile(standard, ranks_above / count) - kShift);
+    return std::log((to - from) * count / own) / kShift;
+  };
+  return {score(below, above), score(above, below)};
 }
 
 void ControlChart::settle() {
@@ -56,10 +72,10 @@ std::optional<ChartAlarm> ControlChart::add(double value) {
   STICKSLIP_EXPECTS(std::isfinite(value));
   outside_ =
       std::ssize(sorted_) >= kFewestForLimits && std::abs(value - mean()) > kShewhart * standard_deviation();
-  const double score = this->score(value);
+  const Scores score = scores(value);
   all_.add(value);
-  const bool rises = upper_.add(score, value, standard_deviation());
-  const bool falls = lower_.add(-score, value, standard_deviation());
+  const bool rises = upper_.add(score.rising, value, standard_deviation());
+  const bool falls = lower_.add(score.falling, value, standard_deviation());
   std::optional<ChartAlarm> alarm;
   if (rises || falls) {
     const Arm& arm = rises ? upper_ : lower_;

@@ -6,9 +6,15 @@
 ///       if (const auto alarm = chart.add(value)) …
 ///
 /// Each value becomes the normal score of its rank among the values before it,
-/// z = Φ⁻¹((R − ½)/n) with the mid-rank R of n values [Barndorff-Nielsen 1963; McDonald, Naval Research
-/// Logistics 37:627–646, 1990]. Upper arm: max(0, · + z − k), lower arm: max(0, · − z − k); an arm above h is
-/// an alarm and restarts at 0 [Page 1954; Hawkins & Olwell 1998].
+/// z = Φ⁻¹((R − ½)/n) with the rank R of n values [McDonald, Naval Research Logistics 37:627–646, 1990].
+/// Upper arm: max(0, · + z − k), lower arm: max(0, · − z − k); an arm above h is an alarm and restarts at 0
+/// [Page 1954; Hawkins & Olwell 1998].
+///
+/// z − k is ln(Φ'(z − 2k)/Φ'(z))/2k: what the value says for a normal distribution whose mean is 2k instead
+/// of 0. Equal values share a cell from Φ⁻¹(a) to Φ⁻¹(b), and say the same about the cell, ln([Φ(Φ⁻¹(b) − 2k)
+/// − Φ(Φ⁻¹(a) − 2k)]/(b − a))/2k [Steiner, Geyer & Wesolowsky, Technometrics 38:230–237, 1996]. So a count
+/// that is mostly 0 has its false alarms and its shifts told as soon as its distribution allows
+/// (docs/evidence.md).
 ///
 /// What is exact: while the values are independent draws from one continuous distribution, whichever, the
 /// ranks are independent and uniform, and false alarms do not depend on the distribution. Below
@@ -16,8 +22,6 @@
 /// - From kFullBaseline values on, values wait outside the baseline while an arm is above 0, so that a shift
 ///   does not become part of what it is compared with. That makes false alarms a little more frequent
 ///   (docs/trend.md, docs/evidence.md).
-/// - Ties share their mid-rank. Scores scatter less then, so that false alarms and alarms are rarer: a count
-///   that is nearly always zero tells only a manifold rise.
 /// - Values that follow each other closely, as a drifting zero does, cause more alarms.
 #pragma once
 
@@ -81,8 +85,12 @@ class ControlChart {
   [[nodiscard]] double mean() const noexcept { return baseline_.mean; }
   /// Of the baseline; 0 with fewer than two values.
   [[nodiscard]] double standard_deviation() const noexcept { return std::sqrt(baseline_.variance()); }
-  /// Normal score of the rank that a value has among the baseline and itself.
-  [[nodiscard]] double score(double value) const;
+  /// What a value adds to each arm, k taken off, by its rank among the baseline and itself.
+  struct Scores {
+    double rising = 0.0;
+    double falling = 0.0;
+  };
+  [[nodiscard]] Scores scores(double value) const;
   /// The latest value lies beyond the Shewhart limits of the values before it.
   [[nodiscard]] bool is_outside() const noexcept { return outside_; }
 
@@ -92,7 +100,8 @@ class ControlChart {
     signal::RunningMean since;        ///< Of the values since it was 0.
     double standard_deviation = 0.0;  ///< Of the baseline when it was 0 last.
 
-    /// \param spread  standard deviation of the baseline now. \return true if it passes h.
+    /// \param score  what the value adds. \param spread  standard deviation of the baseline now.
+    /// \return true if it passes h.
     bool add(double score, double value, double spread);
   };
   /// The baseline takes what waits.

@@ -396,7 +396,6 @@ std::string_view Dialect::content(std::size_t column, std::string_view field) co
 }
 
 void Dialect::read_cells(const std::vector<std::string_view>& fields, std::vector<Cell>& cells) const {
-  cells.clear();
   for (std::size_t c = 0; c < fields.size(); ++c) {
     cells.push_back(c >= columns.size() || numeric[c] ? read_cell(content(c, fields[c]), decimal) : Cell{});
   }

@@ -51,7 +51,7 @@ struct Dialect {
   /// The field as a cell holds it: without its label.
   [[nodiscard]] std::string_view content(std::size_t column, std::string_view field) const;
   /// Reads the fields of the numeric columns and those behind the last column; cells of other columns are
-  /// empty.
+  /// empty. \param cells  get one more for each field.
   void read_cells(const std::vector<std::string_view>& fields, std::vector<Cell>& cells) const;
   /// Whether these fields are one row of scans: a number or a hole in each numeric column, one number at
   /// least. \param cells  from read_cells().

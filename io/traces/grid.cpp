@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/signal/statistics.hpp"
@@ -53,12 +54,40 @@ class Times {
   base::LongColumn<std::size_t> rows_;  ///< Empty: all.
 };
 
+/// What one walk over the steps shows.
+struct Steps {
+  double shortest = std::numeric_limits<double>::infinity();
+  double longest = -std::numeric_limits<double>::infinity();
+  std::size_t backwards = 0;
+  std::size_t first_backwards = 0;
+  std::size_t standing = 0;
+  std::size_t first_standing = 0;
+};
+
+Steps steps_of(const Times& time) {
+  Steps steps;
+  for (std::size_t i = 0; i < time.steps(); ++i) {
+    const double step = time.step(i);
+    if (step < 0.0 && steps.backwards++ == 0) steps.first_backwards = i;
+    if (step == 0.0 && steps.standing++ == 0) steps.first_standing = i;
+    steps.shortest = std::min(steps.shortest, step);
+    steps.longest = std::max(steps.longest, step);
+  }
+  return steps;
+}
+
 struct Interval {
   double mean = 0.0;     ///< Of the steps that are single intervals, those rounded to a coarse digit too.
   bool unequal = false;  ///< They differ by a digit or more.
 };
 
-Interval interval_of(const Times& time, double digit_s) {
+Interval interval_of(const Times& time, const Steps& steps, double digit_s) {
+  // All are single intervals, wherever the median lies between them.
+  if (steps.shortest >= kShortestStep * steps.longest - digit_s &&
+      steps.longest <= kLongestStep * steps.shortest + digit_s) {
+    return {(time[time.size() - 1] - time[0]) / static_cast<double>(time.steps()),
+            steps.longest - steps.shortest > 0.5 * digit_s};
+  }
   const double middle = time.median_step();
   double sum = 0.0;
   std::size_t count = 0;
@@ -195,27 +224,20 @@ base::Result<Grid> grid_of(const RowView& all_times, const GridOptions& options,
         "another column of times",
         place(0));
   }
-  std::size_t backwards = 0;
-  std::size_t first_backwards = 0;
-  std::size_t standing = 0;
-  std::size_t first_standing = 0;
-  for (std::size_t i = 0; i < time.steps(); ++i) {
-    const double step = time.step(i);
-    if (step < 0.0 && backwards++ == 0) first_backwards = i;
-    if (step == 0.0 && standing++ == 0) first_standing = i;
-  }
-  if (2 * backwards > time.steps()) {
+  const Steps steps = steps_of(time);
+  const std::size_t standing = steps.standing;
+  if (2 * steps.backwards > time.steps()) {
     return base::usage_error(
         "{}: time runs backwards: give --reverse to read the rows from the last to the first", place(0));
   }
-  if (backwards > 0) {
+  if (steps.backwards > 0) {
     return base::usage_error(
         "{}: time goes back by {:.6g} s in this row: the clock was set while the file was written. If the "
         "scans are evenly "
         "spaced, give --time-column none and --rate HZ",
-        place(time.row(first_backwards + 1)), -time.step(first_backwards));
+        place(time.row(steps.first_backwards + 1)), -time.step(steps.first_backwards));
   }
-  const auto [interval, unequal] = interval_of(time, options.digit_s);
+  const auto [interval, unequal] = interval_of(time, steps, options.digit_s);
   const bool coarse = 4 * standing > time.steps() || !(interval > 0.0);
   if (coarse) {
     if (!options.rate_Hz) {
@@ -233,7 +255,7 @@ base::Result<Grid> grid_of(const RowView& all_times, const GridOptions& options,
     return base::usage_error(
         "{}: this row has the time of the row before it, as have {} in all: give --skip-doubled to leave "
         "such rows out",
-        place(time.row(first_standing + 1)), standing);
+        place(time.row(steps.first_standing + 1)), standing);
   }
 
   const auto index_for = [&](double step_s) { return indices(time, step_s, options.scratch_folder); };

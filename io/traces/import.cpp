@@ -128,15 +128,21 @@ void take_rows(const Grid& grid, const RowView& value, record::ScanColumns& scan
   }
 }
 
-/// Mean coefficient of the scans of sliding, with its sign; spikes do not count.
-double sliding_level(std::size_t count, const std::function<double(std::size_t)>& coefficient) {
+/// Scans that are looked at for sliding_level().
+constexpr std::size_t kScansForLevel = signal::kMostSorted;
+
+/// Mean coefficient of the scans of sliding, with its sign; spikes do not count. Of long traces it takes
+/// scans at equal distances.
+double sliding_level(std::size_t all, const std::function<double(std::size_t)>& coefficient) {
+  const std::size_t stride = (all - 1) / kScansForLevel + 1;
+  const std::size_t count = (all - 1) / stride + 1;
   const auto place = static_cast<std::size_t>((1.0 - kSpikeShare) * static_cast<double>(count - 1));
   const double largest =
-      signal::nth_of(count, place, [&coefficient](std::size_t i) { return std::abs(coefficient(i)); });
+      signal::nth_of(count, place, [&](std::size_t i) { return std::abs(coefficient(i * stride)); });
   double sum = 0.0;
   std::size_t sliding = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const double c = coefficient(i);
+    const double c = coefficient(i * stride);
     if (std::abs(c) < kSlidingShare * largest || std::abs(c) > largest) continue;
     sum += c;
     ++sliding;

@@ -46,7 +46,6 @@ bool RowReader::add(std::string_view line) {
   if (complete_ || text_.empty()) {
     text_.clear();
     places_.clear();
-    complete_ = false;
   }
   line_.clear();
   if (separator_ == kBlanks) {
@@ -63,14 +62,32 @@ bool RowReader::add(std::string_view line) {
   } else {
     line_ = line;
   }
+  fields_.clear();
+  if (complete_ && line_.find('"') == std::string::npos && split()) return true;
+  complete_ = false;
   line_ += '\n';
   // Out of memory is the only error of a parser that is not strict.
   if (csv_parse(parser_.get(), line_.data(), line_.size(), on_field, on_row, this) != line_.size())
     throw std::bad_alloc();
   if (!complete_) return false;
-  fields_.clear();
   for (const auto& [begin, size] : places_) fields_.push_back(std::string_view{text_}.substr(begin, size));
   return true;
+}
+
+bool RowReader::split() {
+  const char delimiter = static_cast<char>(csv_get_delim(parser_.get()));
+  const auto is_blank = [delimiter](char c) { return (c == ' ' || c == '\t') && c != delimiter; };
+  std::string_view rest = line_;
+  while (true) {
+    const std::size_t size = std::min(rest.find(delimiter), rest.size());
+    std::string_view field = rest.substr(0, size);
+    while (!field.empty() && is_blank(field.front())) field.remove_prefix(1);
+    while (!field.empty() && is_blank(field.back())) field.remove_suffix(1);
+    fields_.push_back(field);
+    if (size == rest.size()) break;
+    rest.remove_prefix(size + 1);
+  }
+  return fields_.size() > 1 || !fields_.front().empty();
 }
 
 void RowReader::on_field(void* text, std::size_t size, void* self) {

@@ -6,7 +6,9 @@
 #include <charconv>
 #include <future>
 #include <limits>
+#include <memory>
 #include <set>
+#include <span>
 
 #include "io/traces/number_file.hpp"
 #include "io/traces/trace_time.hpp"
@@ -52,8 +54,26 @@ struct Rows {
   std::vector<Row> rows;
   std::string text;                  ///< Of all fields.
   std::vector<std::size_t> ends;     ///< Of each field, in text.
+  std::vector<Cell> cells;           ///< Of each field, by Dialect::read_cells().
   bool is_end = false;               ///< No rows follow.
   std::optional<base::Error> error;  ///< Why the file could not be read further; then is_end.
+
+  /// Calls use(fields, cells, line) for each row until it returns false.
+  template <typename Use>
+  void for_each(const Use& use) const {
+    std::vector<std::string_view> fields;
+    std::size_t field = 0;
+    std::size_t begin = 0;
+    for (const Row& row : rows) {
+      const std::size_t first = field;
+      fields.clear();
+      for (; field < row.end; begin = ends[field++])
+        fields.push_back(std::string_view{text}.substr(begin, ends[field] - begin));
+      const std::span<const Cell> own =
+          cells.empty() ? std::span<const Cell>{} : std::span{cells}.subspan(first, fields.size());
+      if (!use(fields, own, row.line)) return;
+    }
+  }
 };
 
 /// Splits the lines of a table into fields.
@@ -62,13 +82,13 @@ class RowSplitter {
   RowSplitter(TextFile& file, const Dialect& dialect)
       : file_(file), dialect_(dialect), reader_(dialect.separator) {}
 
-  /// The next rows.
+  /// The next rows, without cells.
   Rows next() {
     constexpr std::size_t kMost = std::size_t{1} << 14U;
     constexpr std::size_t kMostBytesAtOnce = std::size_t{1} << 20U;
     Rows rows;
     while (rows.rows.size() < kMost &&
-           rows.text.size() + rows.ends.size() * sizeof(std::size_t) < kMostBytesAtOnce) {
+           rows.text.size() + rows.ends.size() * (sizeof(std::size_t) + sizeof(Cell)) < kMostBytesAtOnce) {
       const auto more = file_.next(line_);
       rows.is_end = !more || !*more;
       if (!more) rows.error = more.error();
@@ -114,21 +134,34 @@ class TableReader {
     auto file = TextFile::open(source_, dialect_.encoding);
     if (!file) return tl::unexpected(file.error());
     RowSplitter splitter{*file, dialect_};
-    // The next rows are split in another thread while these are taken.
-    const auto split = [&splitter] { return std::async([&splitter] { return splitter.next(); }); };
-    std::vector<std::string_view> fields;
-    for (auto next = split(); next.valid();) {
-      const Rows rows = next.get();
-      if (!rows.is_end) next = split();
-      std::size_t field = 0;
-      std::size_t begin = 0;
-      for (const Rows::Row& row : rows.rows) {
-        fields.clear();
-        for (; field < row.end; begin = rows.ends[field++])
-          fields.push_back(std::string_view{rows.text}.substr(begin, rows.ends[field] - begin));
-        if (auto taken = take(fields, row.line); !taken) return tl::unexpected(taken.error());
+    // Three threads: one splits rows, one reads the cells of those before, and this one takes those before
+    // them. Cells point into the text, so that rows stay where they are.
+    const auto split = [&splitter] {
+      return std::async([&splitter] { return std::make_unique<Rows>(splitter.next()); });
+    };
+    const auto with_cells = [this](std::unique_ptr<Rows> rows) {
+      std::vector<Cell> cells;
+      cells.reserve(rows->ends.size());
+      rows->for_each([&](const std::vector<std::string_view>& fields, std::span<const Cell>, std::int64_t) {
+        dialect_.read_cells(fields, cells);
+        return true;
+      });
+      rows->cells = std::move(cells);
+      return rows;
+    };
+    auto next = split();
+    std::future<std::unique_ptr<Rows>> ready;
+    while (next.valid() || ready.valid()) {
+      std::future<std::unique_ptr<Rows>> reading;
+      if (next.valid()) {
+        auto rows = next.get();
+        if (!rows->is_end) next = split();
+        reading = std::async(with_cells, std::move(rows));
       }
-      if (rows.error) return tl::unexpected(*rows.error);
+      if (ready.valid()) {
+        if (auto taken = take_all(*ready.get()); !taken) return tl::unexpected(taken.error());
+      }
+      ready = std::move(reading);
     }
     leave_out_labelled();
     if (splitter.is_open()) strange(splitter.row_line(), "a quote that does not end");
@@ -195,6 +228,18 @@ class TableReader {
     return same || units;
   }
 
+  base::Result<void> take_all(const Rows& rows) {
+    base::Result<void> taken;
+    rows.for_each(
+        [&](const std::vector<std::string_view>& fields, std::span<const Cell> cells, std::int64_t line) {
+          cells_ = cells;
+          taken = take(fields, line);
+          return taken.has_value();
+        });
+    if (taken && rows.error) return tl::unexpected(*rows.error);
+    return taken;
+  }
+
   base::Result<void> take(const std::vector<std::string_view>& fields, std::int64_t line) {
     if (std::all_of(fields.begin(), fields.end(),
                     [](std::string_view text) { return trimmed(text).empty(); }))
@@ -205,7 +250,6 @@ class TableReader {
       table_.notes.push_back(fmt::format("line {} left out: the heading or its units again", line));
       return {};
     }
-    dialect_.read_cells(fields, cells_);
     const std::string_view value_text = dialect_.content(value_column_, field(fields, value_column_));
     const Cell value = cell(value_column_, value_text);
     std::optional<TimeCell> time;
@@ -349,7 +393,7 @@ class TableReader {
   std::int64_t strange_line_ = 0;
   std::string strange_what_;
   bool any_value_ = false;
-  std::vector<Cell> cells_;  ///< Of the row at hand.
+  std::span<const Cell> cells_;  ///< Of the row at hand.
   struct MarkPlace {
     std::int64_t line = 0;
     std::string text;

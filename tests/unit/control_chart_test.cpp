@@ -4,6 +4,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -53,15 +54,51 @@ TEST(ControlChart, AddsNormalScoresOfRanksLessK) {
   EXPECT_NEAR(chart.lower(), normal_quantile(3.5 / 4.0) - 0.5, 1e-12);
 }
 
-TEST(ControlChart, GivesTiesTheirMidRank) {
+double normal_cdf(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
+
+TEST(ControlChart, TakesEqualValuesForOneCellOfANormalDistribution) {
   ControlChart chart;
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < 135; ++i) {
     EXPECT_FALSE(chart.add(0.0));
-    EXPECT_EQ(chart.upper(), 0.0);
+    EXPECT_EQ(chart.upper(), 0.0);  // One cell of everything says nothing.
     EXPECT_EQ(chart.lower(), 0.0);
   }
-  chart.add(1.0);
-  EXPECT_NEAR(chart.upper(), normal_quantile(300.5 / 301.0) - 0.5, 1e-9);
+  EXPECT_NEAR(chart.scores(1.0).rising, normal_quantile(135.5 / 136.0) - 0.5, 1e-9);  // The only one.
+  for (int i = 0; i < 14; ++i) {
+    chart.add(1.0);
+    chart.restart_arms();
+  }
+  // 136 of 150 are 0 with the next 0, and 15 are 1 with the next 1: in a distribution one standard deviation
+  // higher, or lower, these cells have other shares.
+  const double from_0_to_1 = normal_quantile(136.0 / 150.0);
+  EXPECT_NEAR(chart.scores(0.0).rising, std::log(normal_cdf(from_0_to_1 - 1.0) / (136.0 / 150.0)), 1e-9);
+  EXPECT_NEAR(chart.scores(0.0).falling, std::log(normal_cdf(from_0_to_1 + 1.0) / (136.0 / 150.0)), 1e-9);
+  const double from_1 = normal_quantile(135.0 / 150.0);
+  EXPECT_NEAR(chart.scores(1.0).rising, std::log(normal_cdf(1.0 - from_1) / (15.0 / 150.0)), 1e-9);
+  EXPECT_NEAR(chart.scores(1.0).falling, std::log(normal_cdf(-1.0 - from_1) / (15.0 / 150.0)), 1e-9);
+}
+
+// The mean of exp(score) over the baseline is 1, as without ties. That sets the rate of false alarms
+// [Lorden, Annals of Mathematical Statistics 42:1897–1908, 1971].
+TEST(ControlChart, HasTheFalseAlarmsOfANormalDistributionWithTies) {
+  ControlChart chart;
+  constexpr std::array kCounts{140, 40, 15, 5};
+  for (std::size_t i = 0; i < kCounts.size(); ++i) {
+    for (int k = 0; k < kCounts[i]; ++k) {
+      chart.add(static_cast<double>(i));
+      chart.restart_arms();
+    }
+  }
+  double rising = 0.0;
+  double falling = 0.0;
+  for (std::size_t i = 0; i < kCounts.size(); ++i) {
+    const ControlChart::Scores scores = chart.scores(static_cast<double>(i));
+    rising += kCounts[i] / 200.0 * std::exp(scores.rising);
+    falling += kCounts[i] / 200.0 * std::exp(scores.falling);
+  }
+  // The value itself is one of 201, and widens its cell by one rank.
+  EXPECT_NEAR(rising, 1.0, 0.02);
+  EXPECT_NEAR(falling, 1.0, 0.02);
 }
 
 std::vector<double> random_values(std::size_t count, std::uint64_t seed) {

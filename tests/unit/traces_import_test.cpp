@@ -204,6 +204,13 @@ TEST_F(TraceImport, NegativeForceNeedsInvert) {
   EXPECT_TRUE(imported) << imported.error().message;
 }
 
+TEST_F(TraceImport, NegativeForceIsToldInALongTraceToo) {
+  std::string content = "F\n";
+  for (int i = 0; i < 200'000; ++i) content += i % 100 < 60 ? "-1\n" : "0\n";
+  request_.rate_Hz = 350.0;
+  expect_refused(content, "the force is negative while sliding, -1 as a coefficient: give --invert");
+}
+
 TEST_F(TraceImport, CountsKeepTheirCodesAndTheirScale) {
   request_.unit = "counts";
   request_.load_cell = daq::LoadCell{2.0, 0.0};
