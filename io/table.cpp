@@ -90,6 +90,11 @@ void Table::add(std::vector<Cell> cells) {
   rows_.push_back(std::move(cells));
 }
 
+std::string padded(std::string_view text, std::size_t width, Table::Align align) {
+  const std::string blanks(width - std::min(width, display_width(text)), ' ');
+  return align == Table::Align::kLeft ? std::string{text} + blanks : blanks + std::string{text};
+}
+
 std::string Table::text(bool colours_stay) const {
   std::vector<std::vector<std::string>> lines(rows_.size() + 1);
   std::vector<std::pair<Align, std::size_t>> places;
@@ -110,15 +115,13 @@ std::string Table::text(bool colours_stay) const {
   }
   std::string text;
   for (const std::vector<std::string>& line : lines) {
-    std::string padded;
+    std::string row;
     for (std::size_t i = 0; i < line.size(); ++i) {
-      const auto& [align, width] = places[i];
-      const std::string blanks(width - std::min(width, display_width(line[i])), ' ');
-      if (i > 0) padded += "  ";
-      padded += align == Align::kLeft ? line[i] + blanks : blanks + line[i];
+      if (i > 0) row += "  ";
+      row += padded(line[i], places[i].second, places[i].first);
     }
-    padded.erase(padded.find_last_not_of(' ') + 1);
-    if (!padded.empty() || &line != &lines.front()) text += padded + '\n';
+    row.erase(row.find_last_not_of(' ') + 1);
+    if (!row.empty() || &line != &lines.front()) text += row + '\n';
   }
   return text;
 }

@@ -85,4 +85,8 @@ template <typename T>
   return value ? cell(*value) : Table::Cell{};
 }
 
+/// A text with blanks up to a width in places of a terminal. A longer one stays as it is.
+[[nodiscard]] std::string padded(std::string_view text, std::size_t width,
+                                 Table::Align align = Table::Align::kLeft);
+
 }  // namespace stickslip::io

@@ -346,12 +346,10 @@ std::string form_text(const Material& material) {
   constexpr std::size_t kLabelWidth = 17;
   std::string text;
   for (const FormLine& line : form_of(material)) {
-    text +=
-        wrapped(fmt::format("{:<{}}{}", line.label, kLabelWidth, base::printable(line.text)), kLabelWidth) +
-        "\n";
+    text += wrapped(io::padded(line.label, kLabelWidth) + base::printable(line.text), kLabelWidth) + "\n";
   }
-  return text + wrapped(fmt::format("{:<{}}{}", "verdict", kLabelWidth, verdict_of(material)), kLabelWidth) +
-         "\n" + limits_lines(material);
+  return text + wrapped(io::padded("verdict", kLabelWidth) + verdict_of(material), kLabelWidth) + "\n" +
+         limits_lines(material);
 }
 
 }  // namespace

@@ -44,7 +44,8 @@ class Estimator {
   [[nodiscard]] virtual analysis::Estimate delta_mu(const ObservedTest& test) const = 0;
 };
 
-/// The instrument's own estimator: analysis::TestAnalysis with the fit of the whole test.
+/// The instrument's own estimator: analysis::TestAnalysis, with turning points where the fit does not
+/// describe the test.
 [[nodiscard]] std::unique_ptr<Estimator> make_whole_test_fit();
 /// The traditional estimator: first peak minus the mean of the following cycles.
 [[nodiscard]] std::unique_ptr<Estimator> make_traditional_difference();

@@ -20,8 +20,8 @@ namespace stickslip::analysis {
 struct TesterEstimate {
   double omega = 0.0;  ///< rad/s
   double gamma_over_2omega = 0.0;
-  double speed_over_gravity_s = 0.0;  ///< v/g = r/ω₀², from the stick rate.
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  double speed_over_gravity_s = 0.0;                     ///< v/g = r/ω₀², from the stick rate.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< Of the three above.
 
   /// \param covariance  of (ω, γ, r).
   [[nodiscard]] static TesterEstimate from(const model::SharedParameters& shared,

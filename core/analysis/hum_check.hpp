@@ -26,13 +26,13 @@ inline constexpr double kLowestRateForHum_Hz = 2.2 * 60.0;
 struct Hum {
   double frequency_Hz = 0.0;
   double amplitude = 0.0;
-  bool is_of_falls = false;  ///< It makes them.
+  bool is_of_falls = false;  ///< The falls found are the hum itself.
 };
 
-/// The median amplitude of stretches under load exceeds kLargestHum by three standard errors. Without slips,
-/// of eight stretches of 0.2 s and more; with slips, of two and more of 1 s, and it is a quarter of their
-/// median drop or more, so that it makes them. In a test that slips by more, hum is seen before it alone
-/// (pipeline/self_check.hpp).
+/// Hum of 50 or 60 Hz whose median amplitude, over stretches under load, exceeds kLargestHum by three
+/// standard errors. Without slips at least 8 stretches of 0.2 s are needed. With slips at least 2 of 1 s, and
+/// the amplitude must be a quarter of the median drop. In a test whose slips are larger, only the self-check
+/// before it sees hum (pipeline/self_check.hpp). nullopt if there is none, and below kLowestRateForHum_Hz.
 [[nodiscard]] std::optional<Hum> find_hum(const estimate::Trace& trace,
                                           const base::LongColumn<detect::Fall>& slips, double scan_rate_Hz);
 

@@ -20,14 +20,15 @@ namespace stickslip::analysis {
 /// Matches the slips of the whole test, one after the other, with the cycles of the live detector.
 class LiveCycles {
  public:
-  /// \param trace  must outlive this, as \param cycles, in the order of time.
+  /// \param trace,cycles  must outlive this object; the cycles are in the order of time.
   LiveCycles(const estimate::Trace& trace, const base::LongColumn<detect::LiveCycle>& cycles) noexcept
       : trace_(&trace), cycles_(&cycles) {}
 
-  /// The live cycle whose peak is nearest to the slip's, within half a period, and that no earlier call
-  /// returned; nullopt if there is none.
+  /// The next live cycle whose peak is nearest to the slip's, closer than half a period; nullopt if there is
+  /// none. Cycles that a call passes over are not returned later.
   /// \param slip  later than that of the call before.
-  /// \param period_s  time to the next slip; NaN if there is none.
+  /// \param period_s  time to the next slip; NaN if there is none, then twice the time from peak to trough
+  ///        counts.
   [[nodiscard]] std::optional<detect::LiveCycle> next_at(const detect::Fall& slip, double period_s);
 
  private:

@@ -35,8 +35,8 @@ struct Slack {
 /// Why no fit of the model is made. \param slack_count > 0.
 [[nodiscard]] std::string why_slack(std::size_t slack_count, std::size_t slip_count);
 
-/// Takes away what turning points do not tell where most troughs are those of a slack coupling: K and S − K,
-/// and in a free oscillation S.
+/// Clears K and S − K, and in a free oscillation S, where most troughs are those of a slack coupling, which
+/// do not tell them. \param why  the reason that they get.
 void void_slack_turns(const std::string& why, model::Regime regime, TestResults& results);
 
 /// Code kSlack.

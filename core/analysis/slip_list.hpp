@@ -10,12 +10,13 @@
 namespace stickslip::analysis {
 
 /// Falls that are slips: `falls`, already selected one by one by detect::SlipRule, without
-/// - falls before the force has been loaded and after it is unloaded: two spikes at rest;
-/// - falls in the hold after a pull, where the force does not climb;
-/// - falls too quick for the oscillation that the others show: steps between spikes;
-/// - the unloading itself, the last fall, which ends where the loading began though the slips do not;
+/// 1. falls before the force has been loaded and after it is unloaded, as two spikes of an unloaded cell
+/// make;
+/// 2. falls at either end down to the unloaded level while the other slips end above it, as the unloading;
+/// 3. falls at the end, in the hold after a pull, where the force does not climb;
+/// 4. falls much shorter than the median one, as steps between spikes make.
 /// Two falls are joined if the time from trough to next peak is less than a quarter of an oscillation: they
-/// are one slip, split by a disturbance. Fewer than three falls are returned unchanged.
+/// are one slip, split by a disturbance. 3, 4 and the joining need three falls at least.
 /// \param scratch  folder for a long list; empty: memory.
 [[nodiscard]] base::LongColumn<detect::Fall> kept_slips(base::LongColumn<detect::Fall> falls,
                                                         const std::filesystem::path& scratch = {});

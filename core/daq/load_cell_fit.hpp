@@ -32,8 +32,9 @@ struct LoadCellFit {
   std::string reason;                  ///< Set exactly when there is no load cell.
 };
 
-/// Fits the line. The result has a reason instead of a load cell if there are fewer than two different loads,
-/// or if the voltage does not change with them.
+/// Least squares of the voltage on the force, without saturated points. The result has a reason instead of a
+/// load cell if a value is not finite, if there are fewer than two different loads, or if the voltage does
+/// not change with them: from three points on, by less than three standard errors.
 [[nodiscard]] LoadCellFit fit_load_cell(std::span<const LoadPoint> points);
 
 }  // namespace stickslip::daq

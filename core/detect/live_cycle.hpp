@@ -26,7 +26,7 @@ inline constexpr std::array<std::pair<EstimatorTier, std::string_view>, 2> kEsti
     {EstimatorTier::kFit, "fit"},
 }};
 
-/// Whether version 0.1 had an estimator of this name; both mean "turning-points" now.
+/// Whether this is an estimator of version 0.1, "peak" or "interpolated", which mean "turning-points" now.
 [[nodiscard]] constexpr bool is_former_estimator(std::string_view text) noexcept {
   return text == "peak" || text == "interpolated";
 }
@@ -38,7 +38,7 @@ inline constexpr std::array<std::pair<EstimatorTier, std::string_view>, 2> kEsti
   return "fit";
 }
 
-/// Of a name, present or former.
+/// The estimator of this name, also one of version 0.1; nullopt if it is unknown.
 [[nodiscard]] constexpr std::optional<EstimatorTier> estimator_tier_from_name(
     std::string_view text) noexcept {
   if (is_former_estimator(text)) return EstimatorTier::kTurningPoints;

@@ -26,7 +26,8 @@ class RingDownWatch {
   void stop() noexcept { running_ = false; }
   [[nodiscard]] bool running() const noexcept { return running_; }
 
-  /// \param usable  false: the scan only advances time. \return the amplitude when this scan ends a period.
+  /// \param value  coefficient. \param usable  false: the scan only advances time.
+  /// \return the amplitude when this scan ends a period with four usable scans at least.
   std::optional<Amplitude> add(double value, bool usable) noexcept {
     if (!running_) return std::nullopt;
     return take(value, usable);

@@ -1,6 +1,6 @@
 /// \file
 /// Levenberg–Marquardt [Levenberg, Q. Appl. Math. 2:164–168, 1944; Marquardt, J. SIAM 11(2):431–441, 1963]:
-/// the one minimiser of all fits.
+/// the one minimiser of all fits that are not linear.
 ///
 ///     MyProblem::State state = first_guess;
 ///     MyProblem::Equations equations;

@@ -8,13 +8,14 @@
 namespace stickslip::pipeline {
 
 std::optional<base::Finding> sled_finding(double sled_mass_kg) {
-  if (sled_mass_kg >= kLightestSled_kg && sled_mass_kg <= kHeaviestSled_kg) return std::nullopt;
+  if (sled_mass_kg >= kLightestPlausibleSled_kg && sled_mass_kg <= kHeaviestPlausibleSled_kg)
+    return std::nullopt;
   return base::make_finding(base::FindingCode::kSledMass,
                             fmt::format("the sled mass is {:.4g} kg, outside {} … {} kg: check its unit",
-                                        sled_mass_kg, kLightestSled_kg, kHeaviestSled_kg),
+                                        sled_mass_kg, kLightestPlausibleSled_kg, kHeaviestPlausibleSled_kg),
                             {{"sled_mass", sled_mass_kg, "kg"},
-                             {"lowest", kLightestSled_kg, "kg"},
-                             {"highest", kHeaviestSled_kg, "kg"}});
+                             {"lowest", kLightestPlausibleSled_kg, "kg"},
+                             {"highest", kHeaviestPlausibleSled_kg, "kg"}});
 }
 
 void add_plausibility(analysis::TestResults& results, double sled_mass_kg) {

@@ -12,8 +12,8 @@ namespace stickslip::pipeline {
 inline constexpr double kLowestCoefficient = 0.01;
 inline constexpr double kHighestCoefficient = 5.0;
 /// Wider than any sled of a friction tester; the standards have 0.2 kg (ISO 8295) to 2.331 kg.
-inline constexpr double kLightestSled_kg = 0.005;
-inline constexpr double kHeaviestSled_kg = 20.0;
+inline constexpr double kLightestPlausibleSled_kg = 0.005;
+inline constexpr double kHeaviestPlausibleSled_kg = 20.0;
 
 /// The finding for a sled outside these limits; nullopt if it is within.
 [[nodiscard]] std::optional<base::Finding> sled_finding(double sled_mass_kg);

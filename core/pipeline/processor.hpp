@@ -70,9 +70,9 @@ class Processor {
   /// After finish(): so many scans came after the latest block and were lost on the way here; 0 is allowed.
   void lost_at_end(std::int64_t count);
 
-  // Commands, in commands.cpp; between two blocks.
+  // Commands, in processor_commands.cpp; between two blocks.
 
-  /// The force may begin the next test.
+  /// The next rise of the force begins a test.
   [[nodiscard]] CommandReport arm(const std::string& who);
   /// A test begins with the next scan.
   [[nodiscard]] CommandReport start(const std::string& who);
@@ -82,8 +82,8 @@ class Processor {
   [[nodiscard]] CommandReport mark(const std::string& text);
   /// What the load cell shows now is its zero from here on.
   [[nodiscard]] TareReport tare(const std::string& who);
-  /// Readings mean this from here on. Only on an idle bench, whose next test begins after all of this.
-  /// \param calibration  of the same board. \param in_use  as in the settings.
+  /// Scans are calibrated so from the next one on. Only on an idle bench, whose next test begins after all of
+  /// this. \param calibration  of the same board. \param in_use  as in the settings.
   [[nodiscard]] CommandReport recalibrate(daq::Calibration calibration, const CalibrationInUse& in_use,
                                           const std::string& who);
   /// Of the tests that begin from here on.

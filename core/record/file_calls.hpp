@@ -1,7 +1,7 @@
 /// \file
 /// Table of the system calls for journals and records, which tests can observe, refuse or delay
 /// (tests/support/*_disk.hpp). Each function makes one system call. All writes go through it, those of HDF5
-/// too (hdf_driver.hpp).
+/// too (hdf_driver.hpp); some questions of status do not.
 #pragma once
 
 #include <sys/stat.h>
@@ -39,7 +39,7 @@ class FileCalls {
   virtual int link(const char* from, const char* to) const = 0;
   virtual int unlink(const char* path) const = 0;
   virtual int mkdir(const char* path, mode_t mode) const = 0;
-  /// Free bytes in the file system of a folder, or −1.
+  /// Free bytes in the file system of a folder, or −1; errno is not always set.
   virtual std::int64_t room(const char* folder) const = 0;
 };
 

@@ -31,19 +31,20 @@ class GivenFile {
   /// Opens a regular file; never blocks.
   /// \param calls  must outlive the object.
   /// Errors, without the file's name: kUsage if it does not exist or is not a regular file, kNoPermission,
-  /// kFailure.
+  /// kBusy, kFailure.
   [[nodiscard]] static base::Result<GivenFile> open(const std::filesystem::path& path,
                                                     const FileCalls& calls = system_calls());
 
   /// Takes a shared lock, which prevents writing by programs that lock (HDF5 does) while the file is open. No
-  /// effect without locks in the file system. Errors: kBusy if a program is writing the file; without the
-  /// file's name.
+  /// effect without locks in the file system. Errors: kBusy if a program is writing the file, else
+  /// as open().
   [[nodiscard]] base::Result<void> share() const;
 
   /// Reads at most bytes.size() bytes from `position` on. \return their number; −1 with errno on an error.
   [[nodiscard]] ssize_t read(std::span<std::byte> bytes, std::uint64_t position) const;
-  /// Reads the whole file: HDF5 crashes on a read error. One of 1 MiB or less is kept, and read() takes it
-  /// from there. To be called before other threads read. \return whether there was no read error.
+  /// Reads the whole file, so that a read error is seen before HDF5, which crashes on it. One of 1 MiB or
+  /// less is kept, and read() takes it from there. To be called before other threads read. \return whether
+  /// there was no read error.
   [[nodiscard]] bool load() const;
 
   [[nodiscard]] std::uint64_t size() const noexcept { return state_->size; }

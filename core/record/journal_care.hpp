@@ -17,8 +17,9 @@ class JournalLock {
  public:
   /// \param longest  time to wait for another holder, such as the finaliser of a killed daemon, which ends
   ///        soon.
-  /// Errors: kUsage if the file does not exist, kFailure if another process keeps the lock or has removed the
-  /// file. On a file system without locks it always succeeds.
+  /// Errors: kUsage if the file does not exist or is no regular file; kFailure if it cannot be opened, or if
+  /// another process keeps the lock or has removed the file. Where the file system has no locks, the file
+  /// counts as locked.
   [[nodiscard]] static base::Result<JournalLock> take(const std::filesystem::path& journal,
                                                       std::chrono::milliseconds longest = {},
                                                       const FileCalls& calls = system_calls());

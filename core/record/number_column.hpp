@@ -35,7 +35,8 @@ struct ArrayShape {
 /// Axes of one element do not count. \param column  takes `why` if it gives no column.
 [[nodiscard]] ArrayShape shape_of(const std::vector<std::uint64_t>& axes, NumberColumn& column);
 
-/// One column for each part of an array; the column itself with `why` if it gives none.
+/// Appends a column for each part of an array along its shorter axis, or `column` itself with `why` if the
+/// array has none that can be used.
 void add_parts(NumberColumn column, const std::vector<std::uint64_t>& axes,
                std::vector<NumberColumn>& columns);
 

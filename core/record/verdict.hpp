@@ -28,10 +28,12 @@ enum class Judgement {
 [[nodiscard]] std::string_view name(Judgement judgement) noexcept;
 
 struct Finding {
+  /// A note does not change the judgement.
   enum class Weight { kNote, kIncomplete, kDamage };
 
   Weight weight = Weight::kNote;
-  std::string place;  ///< Object of the file, with rows where it has any; "file" for the whole.
+  /// For people: an object of the file, with a row or byte where it has any; "file" for the whole.
+  std::string place;
   std::string text;
 };
 

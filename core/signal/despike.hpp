@@ -17,7 +17,8 @@ namespace stickslip::signal {
 
 /// A scan after the filter, in the order of the input.
 struct DespikedScan {
-  double value = 0.0;  ///< As measured, or the median of its neighbourhood if it is a spike.
+  double value = 0.0;  ///< As measured, or what its neighbours have there if it is a spike: their cubic, or
+                       ///< their median.
   bool spike = false;
 };
 

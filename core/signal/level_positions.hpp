@@ -56,7 +56,7 @@ class Stairs {
   void pop() noexcept { --size_; }
 
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
-  /// Not empty. \return value of the last step.
+  /// Requires !empty(). \return value of the last step.
   [[nodiscard]] double lowest() const noexcept { return steps_[size_ - 1].value; }
   [[nodiscard]] std::span<const LevelStep> steps() const noexcept { return {steps_.get(), size_}; }
 

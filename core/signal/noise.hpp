@@ -47,8 +47,9 @@ class FourthDifferences {
 };
 
 /// Standard deviation of white noise on single scans, from fourth differences. Robust: the median absolute
-/// difference of a block, over 0.6745 (its value for unit Gaussian noise), then the median over blocks, so
-/// that spikes and slips have no effect. Streaming, O(1) memory and bounded time per scan; does not allocate.
+/// difference of a block, over 0.6745 (its value for unit Gaussian noise), then the median over the
+/// latest 256 blocks of 64, so that spikes and slips have no effect. Streaming, O(1) memory and bounded time
+/// per scan; does not allocate.
 class NoiseEstimator {
  public:
   /// \param floor  smallest estimate: the rounding noise of one A/D step, step/√12.
@@ -82,7 +83,7 @@ class NoiseEstimator {
 /// Fewest scans for an estimate: one block of fourth differences.
 inline constexpr std::size_t kFewestScansForNoise = 68;
 
-/// Noise of a whole trace, by NoiseEstimator.
+/// Noise at the end of a trace, by NoiseEstimator: of a shorter one than its 256 blocks, of all.
 /// \return the floor if there are fewer than kFewestScansForNoise values.
 /// \tparam Values  any range of double.
 template <typename Values>

@@ -63,14 +63,15 @@ class Cvode {
   Cvode(const Cvode&) = delete;
   Cvode& operator=(const Cvode&) = delete;
 
-  /// \param tolerance > 0, of each variable; the local error of a step. Holds from the next restart on.
+  /// \param tolerance > 0, of each variable; the local error of a step. Call before restart().
   void set_tolerance(const OdeState& tolerance);
   void set_longest_step(double longest_s);
 
   /// Starts again at t = 0 with this state.
   void restart(const OdeState& state);
 
-  /// Takes one internal step, or the part of it up to an event; the next call takes the rest. If CVODE fails,
+  /// Takes one internal step, or the part of it up to an event; the next call takes the rest, or restart()
+  /// begins another motion there. If CVODE fails,
   /// it is restarted from the last good point with ten times the tolerance.
   /// \throws std::runtime_error if it fails with 10⁶ times the tolerance too.
   Step step();

@@ -35,7 +35,8 @@ class ExponentialPolynomial {
 
   /// Adds a t^k.
   void add_power(int k, double a);
-  /// Adds b φ_m(λ, t). At most kDecays different λ.
+  /// Adds b φ_m(λ, t); with λ = 0 that is a power. Contract, of results too: at most kDecays different λ,
+  /// powers below kPowers, orders below kOrders; integral() raises both by one.
   void add_decay(double rate_per_s, int order, double b);
   ExponentialPolynomial& operator+=(const ExponentialPolynomial& other);
 

@@ -85,10 +85,11 @@ class Paper {
   /// \param mean  S and K before the effects.
   Paper(const PaperSettings& settings, const Coefficients& mean);
 
+  /// Begins a test anew; renew() follows.
   void restart(std::uint64_t seed);
   /// The sled meets a new place.
   void renew();
-  /// The contact has given way after this rest.
+  /// Tells that the contact gave way after this time at rest: S becomes the limit that it had then.
   void slipped(double rested_s);
   /// Static limit of the contact after this time at rest.
   [[nodiscard]] double static_limit(double rested_s) const noexcept {

@@ -20,9 +20,10 @@ std::vector<std::string> findings(Estimate static_coefficient, Estimate kinetic_
 }
 
 TEST(Plausibility, LimitsThemselvesAreNoFinding) {
-  EXPECT_THAT(findings(Estimate::of(kHighestCoefficient), Estimate::of(kLowestCoefficient), kLightestSled_kg),
+  EXPECT_THAT(findings(Estimate::of(kHighestCoefficient), Estimate::of(kLowestCoefficient),
+                       kLightestPlausibleSled_kg),
               IsEmpty());
-  EXPECT_THAT(findings(Estimate::none("no peak"), Estimate::of(0.3), kHeaviestSled_kg), IsEmpty());
+  EXPECT_THAT(findings(Estimate::none("no peak"), Estimate::of(0.3), kHeaviestPlausibleSled_kg), IsEmpty());
 }
 
 TEST(Plausibility, ForceInAnotherUnitIsAFindingInFewDigits) {

@@ -45,7 +45,14 @@ tidy() {
     xargs -r -P "$(nproc)" -n 1 clang-tidy -p "$build" --extra-arg=-Wno-shadow --quiet 2>/dev/null
 }
 
+# A folder's README fits a screen (CONTRIBUTING.md).
+readmes_are_short() {
+  find core drivers io report daemon cli tests bench -name README.md -exec awk '
+    END { if (NR > 30) { print FILENAME ": " NR " lines, 30 are allowed"; exit 1 } }' {} \; | (! grep .)
+}
+
 check "who includes whom" python3 tools/lint/include_table.py
+check "READMEs of folders" readmes_are_short
 check "clang-format" formatted
 check "shellcheck" scripts_are_sound
 check "dependencies" dependencies_are_listed
