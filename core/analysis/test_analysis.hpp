@@ -57,7 +57,7 @@ struct AnalysisSettings {
 };
 
 /// Thread-bound. Memory grows with the test by about 34 bytes a scan and 0.4 kB a slip; with a scratch folder
-/// only by 8 bytes a spike, and all functions may throw std::system_error.
+/// only by 8 bytes a spike and for 64 scans, and all functions may throw std::system_error.
 class TestAnalysis {
  public:
   /// \throws std::invalid_argument unless the rate is positive and finite.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 
 namespace stickslip::signal {
 namespace {
@@ -17,9 +16,11 @@ constexpr double kFourthDifferenceGain = 8.366600265340756;
 /// deviations, each √(1/4/64)/0.636 = 0.098 σ or 15 % of the median.
 constexpr double kNearly = 0.3;
 
-/// signal::median() with a guess, which only saves time: nth_element stumbles over noise at every second
-/// comparison, and parting the values at known levels does not.
-double median_near(std::span<const double, FourthDifferences::kBlock> values, double guess) noexcept {
+}  // namespace
+
+// nth_element stumbles over noise at every second comparison, and parting the values at known levels does
+// not.
+double block_median(const std::array<double, FourthDifferences::kBlock>& block, double guess) noexcept {
   constexpr std::size_t kSize = FourthDifferences::kBlock;
   const double from = (1.0 - kNearly) * guess;
   const double to = (1.0 + kNearly) * guess;
@@ -29,7 +30,7 @@ double median_near(std::span<const double, FourthDifferences::kBlock> values, do
   std::size_t below_count = 0;
   std::size_t near_count = 0;
   std::size_t above_count = 0;
-  for (const double value : values) {
+  for (const double value : block) {
     // Written to all, kept by one.
     below[below_count] = near[near_count] = above[above_count] = value;
     const std::size_t is_below = value < from ? 1 : 0;
@@ -49,13 +50,13 @@ double median_near(std::span<const double, FourthDifferences::kBlock> values, do
   return ranked(above, above_count, kRank - below_count - near_count);
 }
 
-}  // namespace
+double sigma_of_median(double of_block) noexcept { return of_block / (kGaussianMad * kFourthDifferenceGain); }
 
 NoiseEstimator::NoiseEstimator(double floor) noexcept : floor_(floor), sigma_(floor) {}
 
 void NoiseEstimator::close_block() noexcept {
   const double typical = block_count_ == 0 ? 0.0 : sorted_[std::min(block_count_, kBlocks) / 2];
-  const double newest = median_near(differences_.block(), typical);
+  const double newest = block_median(differences_.block(), typical);
   double& slot = medians_[block_count_ % kBlocks];
   const std::size_t before = std::min(block_count_, kBlocks);
   const auto begin = sorted_.begin();
@@ -73,7 +74,7 @@ void NoiseEstimator::close_block() noexcept {
   slot = newest;
   ++block_count_;
   const std::size_t filled = std::min(block_count_, kBlocks);
-  sigma_ = std::max(floor_, sorted_[filled / 2] / (kGaussianMad * kFourthDifferenceGain));
+  sigma_ = std::max(floor_, sigma_of_median(sorted_[filled / 2]));
 }
 
 }  // namespace stickslip::signal

@@ -4,12 +4,15 @@
 ///     double sigma = scan_noise(values, step / std::sqrt(12.0));
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <vector>
 
 #include "core/signal/sliding_window.hpp"
+#include "core/signal/statistics.hpp"
 
 namespace stickslip::signal {
 
@@ -83,14 +86,24 @@ class NoiseEstimator {
 /// Fewest scans for an estimate: one block of fourth differences.
 inline constexpr std::size_t kFewestScansForNoise = 68;
 
-/// Noise at the end of a trace, by NoiseEstimator: of a shorter one than its 256 blocks, of all.
+/// Median of a block. \param guess  of it, which saves time.
+[[nodiscard]] double block_median(const std::array<double, FourthDifferences::kBlock>& block,
+                                  double guess) noexcept;
+/// Standard deviation of a scan, from the median of a block.
+[[nodiscard]] double sigma_of_median(double of_block) noexcept;
+
+/// Noise of a whole trace, as NoiseEstimator, over all blocks. Takes 8 bytes for 64 values.
 /// \return the floor if there are fewer than kFewestScansForNoise values.
 /// \tparam Values  any range of double.
 template <typename Values>
 [[nodiscard]] double scan_noise(const Values& values, double floor) {
-  NoiseEstimator estimator{floor};
-  for (const double value : values) estimator.add(value);
-  return estimator.sigma();
+  FourthDifferences differences;
+  std::vector<double> medians;
+  for (const double value : values) {
+    if (!differences.add(value)) continue;
+    medians.push_back(block_median(differences.block(), medians.empty() ? 0.0 : medians.back()));
+  }
+  return medians.empty() ? floor : std::max(floor, sigma_of_median(median(medians)));
 }
 
 /// Resolution of a trace whose converter is unknown: its smallest non-zero step between

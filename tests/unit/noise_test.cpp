@@ -101,6 +101,16 @@ TEST(Noise, SpikesRaiseItOnlyByTheQuantileTheyOccupy) {
   }
 }
 
+TEST(Noise, OfALongTraceIsThatOfAllOfIt) {
+  // A motor is switched off for the last 50 s of 165 s at 350 Hz: 0.3 of the blocks are quiet.
+  std::vector<double> values = white_noise(40'000, 1.0, 1);
+  const std::vector<double> quiet = white_noise(17'500, 0.1, 2);
+  values.insert(values.end(), quiet.begin(), quiet.end());
+  // The median block is at the quantile (0.5 − 0.3)/0.7 of the loud ones, 0.57 standard deviations of 15 %
+  // below their median.
+  EXPECT_NEAR(scan_noise(values, 0.0), 1.0 - 0.57 * 0.15, 0.03);
+}
+
 TEST(Noise, DifferencesDoNotReachAcrossAGap) {
   // A level for each five scans: one difference each, exactly 0, if the gap is told.
   NoiseEstimator told{1e-9};
