@@ -47,25 +47,28 @@ ControlChart::Scores ControlChart::scores(double value) const {
     const double z = quantile(standard, (below + 0.5) / count);
     return {z - kReferenceValue, -z - kReferenceValue};
   }
-  // Of the ranks below, and of those up to the own ones: the share after a shift.
+  // The cell's share after the shift, over its share before. Half a rank at each end is left to values that
+  // have not been seen: else equal values without any other would say nothing, and lower no arm.
   const auto score = [&](double ranks_below, double ranks_above) {
     constexpr double kShift = 2.0 * kReferenceValue;
-    const double from =
-        ranks_below == 0.0 ? 0.0 : cdf(standard, quantile(standard, ranks_below / count) - kShift);
-    const double to =
-        ranks_above == 0.0 ? 1.0 : cdf(standard, -quantile(standard, ranks_above / count) - kShift);
-    return std::log((to - from) * count / own) / kShift;
+    constexpr double kUnseen = 0.5;
+    const double lower = std::max(ranks_below, kUnseen) / count;
+    const double upper = std::max(ranks_above, kUnseen) / count;
+    const double from = cdf(standard, quantile(standard, lower) - kShift);
+    const double to = cdf(standard, -quantile(standard, upper) - kShift);
+    return std::log((to - from) / (1.0 - upper - lower)) / kShift;
   };
   return {score(below, above), score(above, below)};
 }
 
-void ControlChart::settle() {
-  for (const double value : waiting_) {
-    if (std::ssize(sorted_) == kLargestBaseline) break;
+void ControlChart::settle(std::int64_t left) {
+  while (std::ssize(waiting_) > left) {
+    const double value = waiting_.front();
+    waiting_.pop_front();
+    if (std::ssize(sorted_) == kLargestBaseline) continue;
     sorted_.insert(std::upper_bound(sorted_.begin(), sorted_.end(), value), value);
     baseline_.add(value);
   }
-  waiting_.clear();
 }
 
 std::optional<ChartAlarm> ControlChart::add(double value) {
@@ -80,7 +83,7 @@ std::optional<ChartAlarm> ControlChart::add(double value) {
   if (rises || falls) {
     const Arm& arm = rises ? upper_ : lower_;
     const signal::RunningMean& since = arm.since;
-    // The first value has the score 0, so that some are before the onset.
+    // The first value lowers both arms, so that some values are before the onset.
     const double before = (all_.mean * all_.count - since.mean * since.count) / (all_.count - since.count);
     alarm = {rises,
              count_ + 1 - static_cast<std::int64_t>(since.count),
@@ -92,8 +95,7 @@ std::optional<ChartAlarm> ControlChart::add(double value) {
   }
   ++count_;
   waiting_.push_back(value);
-  const bool at_rest = upper() == 0.0 && lower() == 0.0;
-  if (at_rest || std::ssize(sorted_) < kFullBaseline) settle();
+  settle(std::ssize(sorted_) < kFullBaseline ? 0 : excursion_count());
   return alarm;
 }
 

@@ -10,16 +10,18 @@
 /// Upper arm: max(0, · + z − k), lower arm: max(0, · − z − k); an arm above h is an alarm and restarts at 0
 /// [Page 1954; Hawkins & Olwell 1998].
 ///
-/// z − k is ln(Φ'(z − 2k)/Φ'(z))/2k: what the value says for a normal distribution whose mean is 2k instead
-/// of 0. Equal values share a cell from Φ⁻¹(a) to Φ⁻¹(b), and say the same about the cell, ln([Φ(Φ⁻¹(b) − 2k)
-/// − Φ(Φ⁻¹(a) − 2k)]/(b − a))/2k [Steiner, Geyer & Wesolowsky, Technometrics 38:230–237, 1996]. So a count
-/// that is mostly 0 has its false alarms and its shifts told as soon as its distribution allows
+/// z − k is ln(Φ'(z − 2k)/Φ'(z))/2k: the log-likelihood ratio of a normal distribution whose mean is 2k
+/// instead of 0. Equal values are one cell of that distribution, from the share a of values below them to the
+/// share b up to them, and have the log-likelihood ratio of the cell, ln([Φ(Φ⁻¹(b) − 2k) − Φ(Φ⁻¹(a) − 2k)]/(b
+/// − a))/2k [Steiner, Geyer & Wesolowsky, Technometrics 38:230–237, 1996]. False alarms then stay about as
+/// rare as without ties, and a shift of a count that is mostly 0 is told nearly as soon as any chart can
 /// (docs/evidence.md).
 ///
 /// What is exact: while the values are independent draws from one continuous distribution, whichever, the
 /// ranks are independent and uniform, and false alarms do not depend on the distribution. Below
 /// kFullBaseline values that is all. What is not:
-/// - From kFullBaseline values on, values wait outside the baseline while an arm is above 0, so that a shift
+/// - From kFullBaseline values on, values of an excursion – since an arm was 0 – wait outside the baseline,
+/// so that a shift
 ///   does not become part of what it is compared with. That makes false alarms a little more frequent
 ///   (docs/trend.md, docs/evidence.md).
 /// - Values that follow each other closely, as a drifting zero does, cause more alarms.
@@ -28,6 +30,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -42,8 +45,9 @@ inline constexpr double kDecisionInterval = 7.0;
 inline constexpr double kShewhart = 3.0;
 /// Values from which on there are Shewhart limits [Montgomery 2012, 6.2: 20 to 25].
 inline constexpr std::int64_t kFewestForLimits = 20;
-/// Values from which on a shift of one standard deviation is told within 15 values on average, and values of
-/// an excursion wait outside the baseline. With fewer, waiting would make false alarms too frequent.
+/// Values from which on a shift of one standard deviation is told within 15 values on average (of rare counts
+/// within twice as many), and values of an excursion wait outside the baseline. With fewer, waiting would
+/// make false alarms too frequent.
 inline constexpr std::int64_t kFullBaseline = 200;
 /// The baseline takes no further values: its mean is known to a hundredth of a standard deviation, a fiftieth
 /// of k.
@@ -104,15 +108,15 @@ class ControlChart {
     /// \return true if it passes h.
     bool add(double score, double value, double spread);
   };
-  /// The baseline takes what waits.
-  void settle();
+  /// The baseline takes what waits, but for the latest `left` values.
+  void settle(std::int64_t left);
 
   std::int64_t count_ = 0;
   Arm upper_;
   Arm lower_;
   std::vector<double> sorted_;  ///< The baseline, rising.
   signal::RunningVariance baseline_;
-  std::vector<double> waiting_;  ///< Values of the present excursion that are not in the baseline.
+  std::deque<double> waiting_;  ///< Values of the present excursion that are not in the baseline.
   signal::RunningMean all_;
   bool outside_ = false;
 };

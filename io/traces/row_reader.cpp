@@ -43,7 +43,7 @@ RowReader::RowReader(char separator) : separator_(separator), parser_(new csv_pa
 }
 
 bool RowReader::add(std::string_view line) {
-  if (complete_ || text_.empty()) {
+  if (complete_) {
     text_.clear();
     places_.clear();
   }
@@ -63,7 +63,10 @@ bool RowReader::add(std::string_view line) {
     line_ = line;
   }
   fields_.clear();
-  if (complete_ && line_.find('"') == std::string::npos && split()) return true;
+  if (complete_ && line_.find('"') == std::string::npos) {
+    split();
+    return true;
+  }
   complete_ = false;
   line_ += '\n';
   // Out of memory is the only error of a parser that is not strict.
@@ -74,7 +77,7 @@ bool RowReader::add(std::string_view line) {
   return true;
 }
 
-bool RowReader::split() {
+void RowReader::split() {
   const char delimiter = static_cast<char>(csv_get_delim(parser_.get()));
   const auto is_blank = [delimiter](char c) { return (c == ' ' || c == '\t') && c != delimiter; };
   std::string_view rest = line_;
@@ -84,10 +87,9 @@ bool RowReader::split() {
     while (!field.empty() && is_blank(field.front())) field.remove_prefix(1);
     while (!field.empty() && is_blank(field.back())) field.remove_suffix(1);
     fields_.push_back(field);
-    if (size == rest.size()) break;
+    if (size == rest.size()) return;
     rest.remove_prefix(size + 1);
   }
-  return fields_.size() > 1 || !fields_.front().empty();
 }
 
 void RowReader::on_field(void* text, std::size_t size, void* self) {

@@ -30,15 +30,16 @@ class RowReader {
   [[nodiscard]] const std::vector<std::string_view>& fields() const noexcept { return fields_; }
 
  private:
-  /// Fast path for a line without quotes between rows: the same fields. \return false for a blank line.
-  [[nodiscard]] bool split();
+  /// Fast path for a line without quotes between rows: the fields of line_; one that is empty for a blank
+  /// line.
+  void split();
   static void on_field(void* text, std::size_t size, void* self);
   static void on_row(int character, void* self);
 
   char separator_;
   std::unique_ptr<csv_parser, void (*)(csv_parser*)> parser_;
   std::string line_;
-  std::string text_;  ///< Of all fields, one behind the other.
+  std::string text_;  ///< Of the fields of a row with quotes, one behind the other.
   std::vector<std::pair<std::size_t, std::size_t>> places_;
   std::vector<std::string_view> fields_;
   bool complete_ = true;  ///< The next line begins a row.

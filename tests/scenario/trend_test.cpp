@@ -17,7 +17,7 @@ constexpr std::uint64_t kSeed = 1;
 /// The customer's limit, and that of a shift of one standard deviation.
 constexpr double kFewestBetweenFalseAlarms = 450.0;
 constexpr double kMostUntilTold = 15.0;
-/// No chart tells one standard deviation of rare spikes sooner than within 21.5 tests (docs/evidence.md).
+/// No chart tells one standard deviation of rare spikes sooner than within 21 tests (docs/evidence.md).
 constexpr double kMostUntilSpikesTold = 26.5;
 
 // Times to a rare event are exponential: twice their sum over their mean is χ² with 2n degrees of freedom.

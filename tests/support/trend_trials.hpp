@@ -4,7 +4,6 @@
 /// tails, and counts that are mostly zero.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>

@@ -60,7 +60,7 @@ TEST(ControlChart, TakesEqualValuesForOneCellOfANormalDistribution) {
   ControlChart chart;
   for (int i = 0; i < 135; ++i) {
     EXPECT_FALSE(chart.add(0.0));
-    EXPECT_EQ(chart.upper(), 0.0);  // One cell of everything says nothing.
+    EXPECT_EQ(chart.upper(), 0.0);
     EXPECT_EQ(chart.lower(), 0.0);
   }
   EXPECT_NEAR(chart.scores(1.0).rising, normal_quantile(135.5 / 136.0) - 0.5, 1e-9);  // The only one.
@@ -70,16 +70,20 @@ TEST(ControlChart, TakesEqualValuesForOneCellOfANormalDistribution) {
   }
   // 136 of 150 are 0 with the next 0, and 15 are 1 with the next 1: in a distribution one standard deviation
   // higher, or lower, these cells have other shares.
-  const double from_0_to_1 = normal_quantile(136.0 / 150.0);
-  EXPECT_NEAR(chart.scores(0.0).rising, std::log(normal_cdf(from_0_to_1 - 1.0) / (136.0 / 150.0)), 1e-9);
-  EXPECT_NEAR(chart.scores(0.0).falling, std::log(normal_cdf(from_0_to_1 + 1.0) / (136.0 / 150.0)), 1e-9);
-  const double from_1 = normal_quantile(135.0 / 150.0);
-  EXPECT_NEAR(chart.scores(1.0).rising, std::log(normal_cdf(1.0 - from_1) / (15.0 / 150.0)), 1e-9);
-  EXPECT_NEAR(chart.scores(1.0).falling, std::log(normal_cdf(-1.0 - from_1) / (15.0 / 150.0)), 1e-9);
+  // Half a rank at each end is left to the unseen.
+  const auto expected = [](double from, double to, double shift) {
+    return std::log((normal_cdf(normal_quantile(to / 150.0) - shift) -
+                     normal_cdf(normal_quantile(from / 150.0) - shift)) /
+                    ((to - from) / 150.0));
+  };
+  EXPECT_NEAR(chart.scores(0.0).rising, expected(0.5, 136.0, 1.0), 1e-9);
+  EXPECT_NEAR(chart.scores(0.0).falling, expected(0.5, 136.0, -1.0), 1e-9);
+  EXPECT_NEAR(chart.scores(1.0).rising, expected(135.0, 149.5, 1.0), 1e-9);
+  EXPECT_NEAR(chart.scores(1.0).falling, expected(135.0, 149.5, -1.0), 1e-9);
 }
 
-// The mean of exp(score) over the baseline is 1, as without ties. That sets the rate of false alarms
-// [Lorden, Annals of Mathematical Statistics 42:1897–1908, 1971].
+// The mean of exp(score) over the baseline is 1 at most, as without ties, where 2k = 1. So the mean run to a
+// false alarm of an arm is e^h at least [Lorden, Annals of Mathematical Statistics 42:1897–1908, 1971].
 TEST(ControlChart, HasTheFalseAlarmsOfANormalDistributionWithTies) {
   ControlChart chart;
   constexpr std::array kCounts{140, 40, 15, 5};
@@ -96,9 +100,34 @@ TEST(ControlChart, HasTheFalseAlarmsOfANormalDistributionWithTies) {
     rising += kCounts[i] / 200.0 * std::exp(scores.rising);
     falling += kCounts[i] / 200.0 * std::exp(scores.falling);
   }
-  // The value itself is one of 201, and widens its cell by one rank.
-  EXPECT_NEAR(rising, 1.0, 0.02);
-  EXPECT_NEAR(falling, 1.0, 0.02);
+  // Half a rank at the end is left to the unseen. The value itself, one of 201, widens its cell by one rank.
+  const double seen = normal_cdf(normal_quantile(1.0 - 0.5 / 201.0) - 1.0);
+  EXPECT_NEAR(rising, seen, 0.01);
+  EXPECT_NEAR(falling, seen, 0.01);
+}
+
+TEST(ControlChart, DoesNotAddUpSpikesThatAreFarApart) {
+  ControlChart chart;
+  for (int spike = 0; spike < 6; ++spike) {
+    for (int k = 0; k < 1000; ++k) EXPECT_FALSE(chart.add(0.0));
+    EXPECT_EQ(chart.upper(), 0.0);
+    EXPECT_FALSE(chart.add(1.0));
+  }
+}
+
+TEST(ControlChart, LearnsTheMeanOfACountBeyondAFullBaseline) {
+  std::mt19937_64 random{1};
+  std::poisson_distribution<int> count{0.105};
+  ControlChart chart;
+  double sum = 0.0;
+  constexpr int kTests = 3000;
+  for (int k = 0; k < kTests; ++k) {
+    const double value = count(random);
+    sum += value;
+    chart.add(value);
+  }
+  // The present excursion of a few dozen values waits.
+  EXPECT_NEAR(chart.mean(), sum / kTests, 0.02 * sum / kTests);
 }
 
 std::vector<double> random_values(std::size_t count, std::uint64_t seed) {
