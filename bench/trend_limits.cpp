@@ -98,8 +98,8 @@ void print_delays(std::uint64_t histories, std::uint64_t seed, trend::Quantity q
 
 /// What a chart can reach at best, but for some per cent: CUSUM of the log-likelihood ratio, which knows both
 /// distributions. Its delay in the worst case is the least of all charts [Moustakides, Annals of Statistics
-/// 14:1379-1387, 1986]. Its limit makes false alarms of the rising arm as
-/// rare as Siegmund's formula says of the charts here.
+/// 14:1379-1387, 1986]. Its limit makes false alarms of the rising arm as rare as Siegmund's formula says of
+/// the charts here.
 void print_optimum(std::uint64_t histories, std::uint64_t seed, trend::Quantity quantity, double shift) {
   constexpr int kBefore = 200;
   const double between_false_alarms = trend::one_sided_run_length(0.0);

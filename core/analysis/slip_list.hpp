@@ -10,8 +10,7 @@
 namespace stickslip::analysis {
 
 /// Falls that are slips: `falls`, already selected one by one by detect::SlipRule, without
-/// 1. falls before the force has been loaded and after it is unloaded, as two spikes of an unloaded cell
-/// make;
+/// 1. falls before the force has been loaded and after it is unloaded, as two spikes at rest make;
 /// 2. falls at either end down to the unloaded level while the other slips end above it, as the unloading;
 /// 3. falls at the end, in the hold after a pull, where the force does not climb;
 /// 4. falls much shorter than the median one, as steps between spikes make.

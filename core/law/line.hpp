@@ -62,8 +62,9 @@ struct Leftover {
 
 /// Variance τ² between tests for which the weighted squares of the residuals add up to `freedom`; zero if
 /// they are less without it [Paule and Mandel, J. Res. NBS 87:377–385, 1982; DerSimonian and Kacker, Contemp.
-/// Clin. Trials 28:105–114, 2007]. \param fit  gives the residuals of the fit with a τ². \param freedom
-/// degrees of freedom.
+/// Clin. Trials 28:105–114, 2007].
+/// \param fit  gives the residuals of the fit with a τ².
+/// \param freedom  degrees of freedom.
 [[nodiscard]] double between_variance_of(const std::function<Leftover(double)>& fit, double freedom);
 
 /// Weighted least squares with weights 1/(error² + τ²), τ² by between_variance_of(); errors of the parameters

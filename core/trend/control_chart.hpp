@@ -20,8 +20,7 @@
 /// What is exact: while the values are independent draws from one continuous distribution, whichever, the
 /// ranks are independent and uniform, and false alarms do not depend on the distribution. Below
 /// kFullBaseline values that is all. What is not:
-/// - From kFullBaseline values on, values of an excursion – since an arm was 0 – wait outside the baseline,
-/// so that a shift
+/// - From kFullBaseline values on, the values since an arm was 0 wait outside the baseline, so that a shift
 ///   does not become part of what it is compared with. That makes false alarms a little more frequent
 ///   (docs/trend.md, docs/evidence.md).
 /// - Values that follow each other closely, as a drifting zero does, cause more alarms.
