@@ -152,9 +152,10 @@ void follow_and_find(const std::string& index_path, const fs::path& folder, cons
                      const Progress& progress, Found& found) {
   Index index{index_path};
   Follower{index, folder, progress}.follow(found);
-  found.entries = index.find(query);
+  found.match_count = index.count(query);
+  found.entries = index.find(query, found.match_count);
   // Another search may have changed the index in between.
-  found.match_count = std::max(query.most ? index.count(query) : 0, found.entries.size());
+  found.match_count = std::max(found.match_count, found.entries.size());
   found.unread = index.unread();
 }
 

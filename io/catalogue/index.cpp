@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -128,9 +129,8 @@ std::string numbers_of(const record::Metadata& facts) {
   return numbers.dump();
 }
 
-/// Of a row of find().
-Entry entry_in(const Statement& row) {
-  Entry entry;
+/// Fills an empty entry from a row of find().
+void read_entry(const Statement& row, Entry& entry) {
   int column = 0;
   const auto text = [&] { return row.text(column++); };
   entry.file = text();
@@ -159,7 +159,6 @@ Entry entry_in(const Statement& row) {
     estimate.standard_error = row.maybe_number(column++);
     estimate.systematic_uncertainty = row.maybe_number(column++);
   });
-  return entry;
 }
 
 /// What is asked of the records that meet the conditions, with the values to bind.
@@ -239,7 +238,7 @@ void Index::put_unread(const UnreadFile& file, const Signature& signature) { put
 
 void Index::remove(const std::string& file) { remove_.run({Bytes{file}}); }
 
-std::vector<Entry> Index::find(const Query& query) {
+std::vector<Entry> Index::find(const Query& query, std::size_t expected) {
   const std::string column = query.order.empty() ? "start_ns" : query.order;
   const std::string order = fmt::format(" ORDER BY nullif(\"{0}\", '') IS NULL, \"{0}\"{1}, path{1}", column,
                                         query.reversed ? " DESC" : "");
@@ -252,7 +251,9 @@ std::vector<Entry> Index::find(const Query& query) {
   Statement rows = database_.prepare(sql);
   rows.bind(values);
   std::vector<Entry> entries;
-  while (rows.step()) entries.push_back(entry_in(rows));
+  // An entry is large: it is made where it stays.
+  entries.reserve(query.most ? std::min(expected, static_cast<std::size_t>(*query.most)) : expected);
+  while (rows.step()) read_entry(rows, entries.emplace_back());
   return entries;
 }
 

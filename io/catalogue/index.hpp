@@ -72,7 +72,8 @@ class Index {
   void put_unread(const UnreadFile& file, const Signature& signature);
   void remove(const std::string& file);
 
-  [[nodiscard]] std::vector<Entry> find(const Query& query);
+  /// \param expected  number of matches, for which room is made.
+  [[nodiscard]] std::vector<Entry> find(const Query& query, std::size_t expected);
   /// Of the records that meet the conditions, however many find() gives.
   [[nodiscard]] std::size_t count(const Query& query);
   [[nodiscard]] std::vector<UnreadFile> unread();
