@@ -42,13 +42,9 @@ class SlipEnds {
     estimate::read_slip(scans_, trace_, scan_at(slips_[slip].peak_at), end, period_s);
     const model::SlipParameters next = first_guess(trace_, slips_[slip + 1], prior_.shared);
     prior_.next_delta_mu = next.S > next.K ? std::optional{next.S - next.K} : std::nullopt;
-    const auto ratio = [&](const detect::Budget& budget) {
-      return test_.evaluate(scans_.points(), prior_, budget).log_likelihood_ratio;
-    };
-    // A first guess that is so much likelier than any free oscillation is not improved.
-    const double bound = ratio({.decisive = detect::kDecisive, .iterations = 0});
-    if (bound > detect::kDecisive) return bound;
-    return ratio({.iterations = kCaptureIterations});
+    return test_
+        .evaluate(scans_.points(), prior_, {.iterations = kCaptureIterations, .enough = detect::kDecisive})
+        .log_likelihood_ratio;
   }
 
  private:

@@ -126,7 +126,6 @@ void CaptureTest::fit_captured_trajectory(Trajectories& trajectories, const Fitt
                         budget.iterations);
   };
   trajectories.captured = fit(usual);
-  if (budget.iterations == 0) return;  // A lower limit is enough.
   // No second fit is needed if the next slip has not begun and the free trajectory is no better, or if the
   // result is decisive already.
   const double cost = trajectories.captured.equations.cost;
@@ -207,14 +206,20 @@ CaptureEvidence CaptureTest::evaluate(std::span<const estimate::CyclePoint> poin
     const bool tells = ratio > budget.decisive || std::abs(ratio) + (last.most - last.least) < room;
     if (tells && evidence.residual_sigmas <= kMisfitSigmas) return evidence;
   }
-  fit_captured_trajectory(trajectories, usual ? *usual : usual_now(), budget);
-  while (budget.iterations > 0 && leave_out_a_stray_of_both(trajectories)) {
+  if (!usual) usual = usual_now();
+  if (budget.enough < std::numeric_limits<double>::infinity()) {
+    trajectories.captured = *usual;
+    evidence = evidence_of(trajectories, points.front().time_s);
+    if (evidence.log_likelihood_ratio > budget.enough) return evidence;
+  }
+  fit_captured_trajectory(trajectories, *usual, budget);
+  while (leave_out_a_stray_of_both(trajectories)) {
     strays_ = true;
     trajectories.free_cost = fit_free(rows_.all(), trajectories.free);
     fit_captured_trajectory(trajectories, usual_now(), budget);
   }
   last_captured_ = trajectories.captured;
-  last_count_ = strays_ || budget.iterations == 0 ? 0 : rows_.size();
+  last_count_ = strays_ ? 0 : rows_.size();
   return evidence_of(trajectories, points.front().time_s);
 }
 

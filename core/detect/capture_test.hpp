@@ -36,9 +36,11 @@ struct Budget {
   /// Smallest |log-likelihood ratio| of interest. A ratio that is certainly smaller is not computed, which
   /// saves most of the time; then only `known` is set. 0: always compute.
   double decisive = 0.0;
-  /// Limit of the iterations of the captured trajectory's fit. With 0 the ratio is that of the first guess,
-  /// without a look for strays: a lower limit, which suffices where it is decisive for "captured".
+  /// Limit of the iterations of the captured trajectory's fit.
   int iterations = 8;
+  /// Log-likelihood ratio that suffices for "captured". If the first guess of the captured trajectory exceeds
+  /// it, the guess is not improved, and the ratio is a lower limit. Infinity: the guess is always improved.
+  double enough = std::numeric_limits<double>::infinity();
 };
 
 /// What is known of a slip before the test.

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <future>
 #include <limits>
-#include <memory>
 #include <set>
 #include <span>
 
@@ -58,6 +58,16 @@ struct Rows {
   bool is_end = false;               ///< No rows follow.
   std::optional<base::Error> error;  ///< Why the file could not be read further; then is_end.
 
+  /// Keeps the memory.
+  void clear() {
+    rows.clear();
+    text.clear();
+    ends.clear();
+    cells.clear();
+    is_end = false;
+    error.reset();
+  }
+
   /// Calls use(fields, cells, line) for each row until it returns false.
   template <typename Use>
   void for_each(const Use& use) const {
@@ -82,11 +92,11 @@ class RowSplitter {
   RowSplitter(TextFile& file, const Dialect& dialect)
       : file_(file), dialect_(dialect), reader_(dialect.separator) {}
 
-  /// The next rows, without cells.
-  Rows next() {
+  /// Replaces `rows` by the next ones, without cells.
+  void next(Rows& rows) {
     constexpr std::size_t kMost = std::size_t{1} << 14U;
     constexpr std::size_t kMostBytesAtOnce = std::size_t{1} << 20U;
-    Rows rows;
+    rows.clear();
     while (rows.rows.size() < kMost &&
            rows.text.size() + rows.ends.size() * (sizeof(std::size_t) + sizeof(Cell)) < kMostBytesAtOnce) {
       const auto more = file_.next(line_);
@@ -103,7 +113,6 @@ class RowSplitter {
       }
       rows.rows.push_back({row_line_, rows.ends.size()});
     }
-    return rows;
   }
 
   /// Whether the file ended within a row, and where that begins.
@@ -134,35 +143,7 @@ class TableReader {
     auto file = TextFile::open(source_, dialect_.encoding);
     if (!file) return tl::unexpected(file.error());
     RowSplitter splitter{*file, dialect_};
-    // Three threads: one splits rows, one reads the cells of those before, and this one takes those before
-    // them. Cells point into the text, so that rows stay where they are.
-    const auto split = [&splitter] {
-      return std::async([&splitter] { return std::make_unique<Rows>(splitter.next()); });
-    };
-    const auto with_cells = [this](std::unique_ptr<Rows> rows) {
-      std::vector<Cell> cells;
-      cells.reserve(rows->ends.size());
-      rows->for_each([&](const std::vector<std::string_view>& fields, std::span<const Cell>, std::int64_t) {
-        dialect_.read_cells(fields, cells);
-        return true;
-      });
-      rows->cells = std::move(cells);
-      return rows;
-    };
-    auto next = split();
-    std::future<std::unique_ptr<Rows>> ready;
-    while (next.valid() || ready.valid()) {
-      std::future<std::unique_ptr<Rows>> reading;
-      if (next.valid()) {
-        auto rows = next.get();
-        if (!rows->is_end) next = split();
-        reading = std::async(with_cells, std::move(rows));
-      }
-      if (ready.valid()) {
-        if (auto taken = take_all(*ready.get()); !taken) return tl::unexpected(taken.error());
-      }
-      ready = std::move(reading);
-    }
+    if (auto taken = take_rows_of(splitter); !taken) return tl::unexpected(taken.error());
     leave_out_labelled();
     if (splitter.is_open()) strange(splitter.row_line(), "a quote that does not end");
     if (!file->line_was_ended()) leave_out_cut_line(file->line_number());
@@ -226,6 +207,54 @@ class TableReader {
       units = units && (text.empty() || is_unit(text));
     }
     return same || units;
+  }
+
+  /// All rows to the end of the file, or to an error.
+  base::Result<void> take_rows_of(RowSplitter& splitter) {
+    // Three threads: one splits rows, one reads the cells of those before, and this one takes those before
+    // them. Each may be some pieces ahead of the next.
+    constexpr std::size_t kPieces = 4;
+    struct Piece {
+      Rows rows;
+      std::shared_future<void> split;
+      std::future<void> read;
+    };
+    std::array<Piece, kPieces> pieces;
+    const auto start = [&](Piece& piece, std::shared_future<void> before) {
+      piece.split = std::async([&splitter, &rows = piece.rows, before = std::move(before)] {
+                      if (before.valid()) before.get();
+                      splitter.next(rows);
+                    }).share();
+      piece.read = std::async([this, &rows = piece.rows, split = piece.split] {
+        split.get();
+        read_cells(rows);
+      });
+    };
+    std::shared_future<void> before;
+    for (Piece& piece : pieces) {
+      start(piece, before);
+      before = piece.split;
+    }
+    for (std::size_t i = 0;; i = (i + 1) % kPieces) {
+      Piece& piece = pieces[i];
+      piece.read.get();
+      auto taken = take_all(piece.rows);
+      if (!taken || piece.rows.is_end) return taken;
+      start(piece, before);
+      before = piece.split;
+    }
+  }
+
+  /// From the text of the rows, into which the cells point.
+  void read_cells(Rows& rows) const {
+    std::vector<Cell> cells = std::move(rows.cells);
+    rows.cells.clear();
+    cells.clear();
+    rows.for_each([&](const std::vector<std::string_view>& fields, std::span<const Cell>, std::int64_t) {
+      dialect_.read_cells(fields, cells);
+      return true;
+    });
+    rows.cells = std::move(cells);
   }
 
   base::Result<void> take_all(const Rows& rows) {
