@@ -184,8 +184,11 @@ void SlipFollower::first_fit(double sigma) noexcept {
   // Up to the trough, before which a capture cannot come.
   const estimate::CycleFit fit =
       estimate::fit_cycle(estimate::between(buffer_.points(), window_from_s_, now_.trough_s), false,
-                          first_guess(), knowledge_, sigma);
-  if (fit.converged) now_.shared = fit.shared;
+                          first_guess(), knowledge_.best(), knowledge_, sigma);
+  if (fit.converged) {
+    now_.shared = fit.shared;
+    now_.first_fit = fit.slip;
+  }
   now_.test_from_s = base::kNaN;
 }
 
@@ -311,12 +314,16 @@ void SlipFollower::estimate(double now_s, double sigma) noexcept {
 void SlipFollower::estimate_by_fit(double end_s, double sigma) noexcept {
   const bool is_captured = now_.decided && captured();
   const auto points = estimate::between(buffer_.points(), window_from_s_, end_s);
-  estimate::CycleFit fit = estimate::fit_cycle(points, is_captured, first_guess(), knowledge_, sigma);
+  estimate::CycleFit fit =
+      now_.first_fit
+          ? estimate::fit_cycle(points, is_captured, *now_.first_fit, now_.shared, knowledge_, sigma)
+          : estimate::fit_cycle(points, is_captured, first_guess(), knowledge_.best(), knowledge_, sigma);
   if (fit.converged && fit.residual_sigmas > kMisfitSigmas && rise_slope(sigma) > 0.0 &&
       std::abs(std::log(now_.rise_slope / knowledge_.best().r)) > kStickRateChange) {
     estimate::SharedPosterior anew = knowledge_;
     anew.forget_stick_rate(now_.rise_slope);
-    const estimate::CycleFit other = estimate::fit_cycle(points, is_captured, first_guess(), anew, sigma);
+    const estimate::CycleFit other =
+        estimate::fit_cycle(points, is_captured, first_guess(), anew.best(), anew, sigma);
     if (other.converged && belt_changed(other.residual_sigmas, fit.residual_sigmas)) {
       knowledge_ = anew;
       fit = other;

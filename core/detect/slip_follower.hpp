@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "core/detect/belt_change.hpp"
@@ -104,6 +105,7 @@ class SlipFollower {
     /// Scans from here on tell how it ends; NaN until tested.
     double test_from_s = std::numeric_limits<double>::quiet_NaN();
     model::SharedParameters shared;
+    std::optional<model::SlipParameters> first_fit;  ///< To the trough, where it was fitted and converged.
     CaptureEvidence evidence;
   };
 

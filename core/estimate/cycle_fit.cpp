@@ -147,10 +147,11 @@ void finish(CycleFit& fit, const CycleEquations& equations) noexcept {
 }  // namespace
 
 CycleFit fit_cycle(std::span<const CyclePoint> points, bool captured, const model::SlipParameters& start,
-                   const SharedPosterior& knowledge, double sigma) noexcept {
+                   const model::SharedParameters& shared, const SharedPosterior& knowledge,
+                   double sigma) noexcept {
   CycleFit fit;
   const CycleProblem problem{points, captured, knowledge, sigma};
-  CycleState state{start, knowledge.best()};
+  CycleState state{start, shared};
   fit.slip = start;
   fit.shared = state.shared;
   if (points.size() < kFewestCyclePoints) return fit;

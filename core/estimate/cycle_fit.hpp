@@ -36,11 +36,12 @@ struct CycleFit {
 };
 
 /// \param points  of one slip: from the stick before it to the stick, or the free oscillation, after it.
-/// \param start   first guess of onset, S and K; that of ω, γ and r is knowledge.best().
+/// \param start   first guess of onset, S and K.
+/// \param shared  first guess of ω, γ and r.
 /// \param sigma   noise of one scan, > 0.
 /// \return converged = false with fewer than four points, or if the fit does not converge.
 [[nodiscard]] CycleFit fit_cycle(std::span<const CyclePoint> points, bool captured,
-                                 const model::SlipParameters& start, const SharedPosterior& knowledge,
-                                 double sigma) noexcept;
+                                 const model::SlipParameters& start, const model::SharedParameters& shared,
+                                 const SharedPosterior& knowledge, double sigma) noexcept;
 
 }  // namespace stickslip::estimate
