@@ -31,11 +31,11 @@ struct MethodMeasurement {
   std::string method;
   std::string setting;
   std::string lacks;  ///< Reason why the method cannot compute this motion; empty if it can.
-  /// Largest difference of the coefficient from the reference; nullopt for the reference itself (and for
-  /// equality in every bit), infinity if the method gave a value that is not finite.
+  /// Largest difference of the coefficient from the reference; infinity if a value is not finite. Nullopt if
+  /// `lacks` is set, and if the reference is CVODE and the values are equal to its in every bit.
   std::optional<double> largest_error;
-  double ns_per_scan = 0.0;
-  std::int64_t capture_count = 0;
+  double ns_per_scan = 0.0;        ///< Computing time.
+  std::int64_t capture_count = 0;  ///< RunOutcome::capture_count.
 };
 
 struct MotionComparison {
@@ -44,21 +44,22 @@ struct MotionComparison {
   std::int64_t capture_count = 0;       ///< By the reference.
   std::vector<MethodMeasurement> rows;  ///< In the order of the methods.
 
-  /// Computing time of the closed forms; nullopt if the motion has none.
+  /// Computing time of make_exact(); nullopt if no row has it, or if the motion has no closed form.
   [[nodiscard]] std::optional<double> exact_ns_per_scan() const;
 };
 
-/// 0 … 1
+/// Called from time to time with the share of the work that is done, 0 … 1.
 using Progress = std::function<void(double done)>;
 
 /// Runs and times each method (least_time_ns()). The reference has 50 digits if the motion allows it;
 /// otherwise it is CVODE at its smallest tolerance. Its uncertainty is then the larger of its stated accuracy
-/// and the difference from a run with ten times that tolerance.
+/// and the difference from a run with ten times that tolerance. A method that gives up says so in its row.
+/// \throws std::runtime_error if CVODE gives up as the reference.
 [[nodiscard]] MotionComparison compare_motion(const MotionCase& motion_case,
                                               std::span<const std::unique_ptr<Method>> methods,
                                               const base::Clock& clock, const Progress& progress = {});
 
-/// Largest |a − b|; infinity if one of them is not finite.
+/// Largest |a − b| of spans of one length; infinity if a value is not finite, 0 if they are empty.
 [[nodiscard]] double largest_difference(std::span<const double> a, std::span<const double> b);
 
 }  // namespace stickslip::accuracy

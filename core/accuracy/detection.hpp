@@ -33,21 +33,23 @@ struct ObservedTest {
   [[nodiscard]] std::optional<double> true_delta_mu() const;
 };
 
-/// Stateless. Thread-safe.
+/// Estimates S − K from a whole test. Stateless. Thread-safe.
 class Estimator {
  public:
   virtual ~Estimator() = default;
 
   [[nodiscard]] virtual std::string_view name() const noexcept = 0;
+  /// Setting of the estimator; empty if it has none.
   [[nodiscard]] virtual std::string setting() const = 0;
-  /// S − K of the whole test; must not use the truth.
+  /// S − K of the whole test, or the reason for its absence; must not use the truth.
   [[nodiscard]] virtual analysis::Estimate delta_mu(const ObservedTest& test) const = 0;
 };
 
 /// The instrument's own estimator: analysis::TestAnalysis, with turning points where the fit does not
 /// describe the test.
 [[nodiscard]] std::unique_ptr<Estimator> make_whole_test_fit();
-/// The traditional estimator: first peak minus the mean of the following cycles.
+/// The traditional estimator: static less kinetic coefficient by the test's method, by default the first peak
+/// less the mean of the ten cycles after it.
 [[nodiscard]] std::unique_ptr<Estimator> make_traditional_difference();
 
 [[nodiscard]] std::vector<std::unique_ptr<Estimator>> shipped_estimators();
@@ -56,11 +58,11 @@ struct DetectionRow {
   std::string estimator;
   std::string setting;
   std::string reason;                  ///< Why there is no estimate; empty if there is.
-  std::optional<double> error;         ///< Estimate less truth, of S − K.
-  std::optional<double> us_per_cycle;  ///< Nullopt if the truth has no cycle.
+  std::optional<double> error;         ///< Estimate less truth, of S − K; nullopt without either.
+  std::optional<double> us_per_cycle;  ///< Time of the test over its true cycles; nullopt if it has none.
 };
 
-/// Timed as compare_motion() does.
+/// Runs and times (least_time_ns()) each estimator.
 [[nodiscard]] std::vector<DetectionRow> compare_estimators(
     const ObservedTest& test, std::span<const std::unique_ptr<Estimator>> estimators,
     const base::Clock& clock);

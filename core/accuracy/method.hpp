@@ -23,7 +23,7 @@ struct RunOutcome {
   std::int64_t undecided_count = 0;  ///< Captures, found or not, that the method reports as undecided.
 };
 
-/// Stateless. Thread-safe.
+/// A method for computing a motion. Stateless. Thread-safe.
 class Method {
  public:
   virtual ~Method() = default;
@@ -34,19 +34,23 @@ class Method {
   [[nodiscard]] virtual std::string setting() const = 0;
   /// Feature of this motion that the method does not support; empty if it supports all.
   [[nodiscard]] virtual std::string_view lacks(const sim::Motion& motion) const noexcept = 0;
-  /// The coefficient at scans 0, 1, …
-  /// \param motion  lacks() is empty. \param scan_rate_Hz > 0. \param seed of the motion's random numbers.
+  /// Computes the coefficient at scans 0, 1, … up to the end of `coefficient`.
+  /// \param motion  lacks() is empty.
+  /// \param scan_rate_Hz  > 0.
+  /// \param seed  of the motion's random numbers.
+  /// \throws std::runtime_error if the method gives up, as CVODE may.
   virtual RunOutcome run(const sim::Motion& motion, double scan_rate_Hz, std::uint64_t seed,
                          std::span<double> coefficient) const = 0;
 };
 
-/// sim::Propagator.
+/// The method of closed forms, sim::Propagator.
 [[nodiscard]] std::unique_ptr<Method> make_exact();
 /// sim::NumericSolver: SUNDIALS CVODE with root finding and our test of grazing.
 /// \param accuracy 1e-12 … 1e-2.
 [[nodiscard]] std::unique_ptr<Method> make_cvode(double accuracy);
 /// Boost.odeint's Dormand–Prince 5(4), and its extrapolation by Bulirsch and Stoer of order up to 16, in
-/// steps of their own. Events are looked for in the dense output, inside a step at c″ = 0 too.
+/// steps of their own. An event, c′ reaching the belt's rate or c reaching zero, is looked for in the dense
+/// output, also at the extremes of c′ and c within a step.
 /// \param tolerance  > 0, absolute and relative, of a step.
 [[nodiscard]] std::unique_ptr<Method> make_dormand_prince(double tolerance);
 [[nodiscard]] std::unique_ptr<Method> make_bulirsch_stoer(double tolerance);
@@ -65,7 +69,7 @@ inline constexpr double kStribeckOverTanh = 3.0;
 /// \param width  w over the belt's fastest speed, > 0; the step follows from it by stability.
 [[nodiscard]] std::unique_ptr<Method> make_tanh(double width, double stribeck_over_tanh = kStribeckOverTanh);
 
-/// All of the above at the settings of the table, the exact one first.
+/// All methods above, each at the settings that `stickslip accuracy` shows; the exact one first.
 [[nodiscard]] std::vector<std::unique_ptr<Method>> shipped_methods();
 
 }  // namespace stickslip::accuracy

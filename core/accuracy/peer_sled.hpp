@@ -21,17 +21,19 @@ struct PeerSled {
 
   double omega0_squared, gamma, S, K;
   bool one_way;
-  double damper_share_s;
+  double damper_share_s;  ///< γ/ω₀² if the damper's force counts at the onset; else 0.
 
-  /// Acceleration c″ by the coupling.
+  /// Acceleration c″ by the coupling, 1/s²; 0 where a one-way coupling is slack.
   [[nodiscard]] double pull(double c, double rate) const {
     return one_way && c < 0.0 ? 0.0 : -omega0_squared * c - gamma * rate;
   }
+  /// Force of the spring as a coefficient; 0 where a one-way coupling is slack.
   [[nodiscard]] double spring(double c) const { return one_way && c < 0.0 ? 0.0 : c; }
-  /// Can static friction hold the sled on a belt of this rate?
+  /// Whether static friction can hold the sled on a belt of this rate, 1/s.
   [[nodiscard]] bool holds(double c, double belt_rate) const {
     return std::abs(spring(c) + damper_share_s * belt_rate) <= S;
   }
+  /// c at scan 0: 0, or below zero by the slack.
   [[nodiscard]] static double start_c(const sim::Motion& motion) {
     return -motion.startup_slack_m * motion.oscillator.omega0_squared() / motion.gravity_m_per_s2;
   }

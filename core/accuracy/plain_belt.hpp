@@ -9,23 +9,25 @@
 
 namespace stickslip::accuracy {
 
+/// The belt at a time that moves forward: its rate, and when that changes.
 class PlainBelt {
  public:
   /// \param motion  outlives this; lacks_reference() is empty.
   explicit PlainBelt(const sim::Motion& motion) : motion_(&motion) { pass(0.0); }
 
-  /// r = ω₀² v/g, 1/s.
+  /// r = ω₀² v/g, 1/s; 0 after the last segment.
   [[nodiscard]] double rate() const noexcept { return rate_; }
-  /// When the next segment begins, s.
+  /// When the present segment ends, s; infinity after the last.
   [[nodiscard]] double end_s() const noexcept { return end_s_; }
-  /// Does it stop as soon as the force is gone?
+  /// Whether the belt stops as soon as the force is gone; the caller then calls halt().
   [[nodiscard]] bool halts_when_unloaded() const noexcept { return halts_; }
+  /// Stops the belt for the rest of the segment.
   void halt() noexcept {
     halts_ = false;
     rate_ = 0.0;
   }
 
-  /// Starts the segments that have begun by now.
+  /// Goes to the segment at now_s, which must not fall from call to call.
   void pass(double now_s) {
     while (end_s_ <= now_s) {
       halts_ = false;

@@ -23,13 +23,13 @@ namespace stickslip::accuracy {
 /// belt speeds, any damping, both couplings, both onset conventions, uniform paper.
 [[nodiscard]] std::string_view lacks_reference(const sim::Motion& motion) noexcept;
 
-/// Runs in constant memory. Thread-bound.
+/// Computes the scans of a plain motion one after the other, in 50 digits and constant memory. Thread-bound.
 class Reference {
  public:
   /// \param motion  lacks_reference() is empty. \param scan_rate_Hz > 0.
   Reference(const sim::Motion& motion, double scan_rate_Hz);
 
-  /// The coefficient at the next scans.
+  /// Computes the coefficient at the next scans, rounded to double.
   void next(std::span<double> coefficient);
   /// Skips `scans` scans; takes time only for the events between.
   void skip(std::int64_t scans);
@@ -38,11 +38,11 @@ class Reference {
 
   /// Slips so far that ended because the sled reached the belt's speed.
   [[nodiscard]] std::int64_t capture_count() const noexcept { return capture_count_; }
-  /// Start of the piece of motion at hand, s.
+  /// Start of the present piece of motion, s after scan 0: a stick, slip or flight on a belt of one speed.
   [[nodiscard]] const Real& piece_start_s() const noexcept { return start_s_; }
-  /// The latest onset of a slip from sticking, s; nothing if there was none.
+  /// The latest onset of a slip from sticking, s after scan 0; nullopt if there was none.
   [[nodiscard]] const std::optional<Real>& last_onset_s() const noexcept { return last_onset_s_; }
-  /// The latest capture, s.
+  /// The latest capture, s after scan 0; nullopt if there was none.
   [[nodiscard]] const std::optional<Real>& last_capture_s() const noexcept { return last_capture_s_; }
 
  private:

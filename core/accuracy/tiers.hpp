@@ -22,38 +22,41 @@ inline constexpr std::string_view kTierScene =
     "cycle "
     "with ω, γ and the stick rate known";
 
+/// One row: an estimator at one scan rate.
 struct TierRow {
   double scan_rate_Hz = 0.0;
   double scans_per_cycle = 0.0;  ///< Of the oscillation.
   std::string estimator;
   std::string reason;         ///< Why there are no numbers; empty if there are.
   double bias = 0.0;          ///< Mean of (S − K found)/(true S − K) − 1.
-  double deviation = 0.0;     ///< Standard deviation of the same.
+  double deviation = 0.0;     ///< Standard deviation of (S − K found)/(true S − K).
   double over_bound = 0.0;    ///< deviation over the Cramér–Rao bound of a cycle.
-  double us_per_cycle = 0.0;  ///< Time for a whole test over its cycles.
+  double us_per_cycle = 0.0;  ///< Computing time of a whole test over its cycles.
 };
 
 /// Input of all estimators at one scan rate: the force of several tests.
 struct TierScene {
   double scan_rate_Hz = 0.0;
-  double frequency_Hz = 0.0;  ///< Of the oscillation.
-  std::vector<std::vector<double>> tests;
+  double frequency_Hz = 0.0;               ///< Of the oscillation.
+  std::vector<std::vector<double>> tests;  ///< Coefficients, scan by scan.
 };
 
 /// Result of an external program for one scene; it gets whole tests and measures its own time.
 struct PeerOutcome {
   double ns_per_scan = 0.0;       ///< Of the first test.
-  std::vector<double> estimates;  ///< Of S − K, of the cycles of all tests but the first of each.
+  std::vector<double> estimates;  ///< S − K of each cycle of all tests, but for the first cycle of each test.
 };
 
+/// An external program to compare with.
 struct Peer {
   std::string name;
-  /// An outcome for each scene. Its error is the reason in its rows.
+  /// Returns an outcome for each scene, in their order; or an error, which is the reason in all its rows.
   std::function<base::Result<std::vector<PeerOutcome>>(std::span<const TierScene>)> run;
 };
 
 /// The tiers of detect::LiveDetector, the raw maximum less the mean, and a peer, at 50 … 10 000 scans/s.
-/// Seeded: the same numbers each time but for the times.
+/// A rate that estimate::check_sampling() refuses has one row, "all", with the reason. The numbers are the
+/// same in each run, but for the times.
 [[nodiscard]] std::vector<TierRow> compare_tiers(const base::Clock& clock, const Peer& peer);
 
 }  // namespace stickslip::accuracy

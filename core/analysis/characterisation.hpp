@@ -1,6 +1,6 @@
 /// \file
 /// Characterisation of a tester: ω and γ, which belong to the tester and not to the paper, pooled from
-/// ring-downs. Each later test checks them and its pull speed.
+/// ring-downs. Each later test is checked against them, and its pull speed against the plan.
 #pragma once
 
 #include <optional>
@@ -18,11 +18,12 @@ namespace stickslip::analysis {
 
 /// Estimate of the tester's parameters from one test.
 struct TesterEstimate {
-  double omega = 0.0;  ///< rad/s
+  double omega = 0.0;  ///< rad/s, damped.
   double gamma_over_2omega = 0.0;
-  double speed_over_gravity_s = 0.0;                     ///< v/g = r/ω₀², from the stick rate.
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< Of the three above.
+  double speed_over_gravity_s = 0.0;                     ///< v/g = r/ω₀²; v is the largest belt speed.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< Of the three above, in their order.
 
+  /// Converts the parameters of a fit. The covariance is propagated to first order.
   /// \param covariance  of (ω, γ, r).
   [[nodiscard]] static TesterEstimate from(const model::SharedParameters& shared,
                                            const Eigen::Matrix3d& covariance);
@@ -39,13 +40,13 @@ struct Characterisation {
   [[nodiscard]] double probability() const;
 };
 
-/// Probability below which a test that disagrees with the characterisation is reported. Every test is
-/// checked; at 1e-4 a season of tests of a sound tester causes hardly one false report, while a changed
-/// spring is off by many standard errors.
+/// TesterCheck::probability below which a test is reported as disagreeing with the characterisation. Every
+/// test is checked: at 1e-4 a season of tests of a sound tester causes hardly one false report, while a
+/// changed spring is off by many standard errors.
 inline constexpr double kDisagreement = 1e-4;
-/// Probability below which the characterisation is not used for a test. The γ of ten cycles alone has a
-/// standard error 28 times larger. At 1e-4, false rejections raised the rms error of γ to 1.8 times the
-/// bound; at 1e-7 they add 0.1 %.
+/// TesterCheck::probability below which the characterisation is not used for a test. Without it γ from ten
+/// cycles has a standard error 28 times larger, so a false rejection costs much. At 1e-4 false rejections
+/// raised the rms error of γ to 1.8 times the Cramér–Rao bound; at 1e-7 they add 0.1 %.
 inline constexpr double kNotThisTester = 1e-7;
 
 /// Mean of the ring-downs, weighted by their inverse covariances. If χ² exceeds its degrees of freedom, the
@@ -60,38 +61,43 @@ inline constexpr double kSpeedTolerance = 0.05;
 /// Check of one test against the characterisation and the planned speed.
 struct TesterCheck {
   double chi_squared = 0.0;  ///< Of the test alone against the characterisation; 2 degrees of freedom.
-  double probability = 1.0;
-  Estimate pull_speed;  ///< m/s, from the stick rate and ω₀.
-  std::vector<base::Finding> findings;
+  double probability = 1.0;  ///< Of a χ² at least this large by chance; 0 if χ² is not finite.
+  Estimate pull_speed;       ///< m/s, from the stick rate and ω₀.
+  std::vector<base::Finding> findings;  ///< kTesterChanged and kPullSpeed, if they apply.
 
   [[nodiscard]] bool agrees() const noexcept { return probability >= kDisagreement; }
   /// The characterisation is used for this test.
   [[nodiscard]] bool used() const noexcept { return probability >= kNotThisTester; }
 };
 
-/// v = (v/g) g, m/s, with its standard error.
+/// Pull speed v = (v/g) g, m/s, with its standard error. If a drift was subtracted from the trace, v lacks
+/// drift rate · g/ω₀².
 [[nodiscard]] Estimate pull_speed_of(const TesterEstimate& estimate, double gravity_m_per_s2);
 
-/// The finding if the measured speed differs from the planned one by more than kSpeedTolerance and by
-/// more than three standard errors. Nullopt otherwise, and if either is unknown.
+/// Finding kPullSpeed if the measured speed differs from the planned one by more than kSpeedTolerance and by
+/// more than three standard errors; else nullopt. Nullopt also if the plan, the measured speed or its
+/// standard error is unknown.
 [[nodiscard]] std::optional<base::Finding> speed_finding(const Estimate& measured_m_per_s,
                                                          const model::Tester& tester);
 
-/// μ′ = (γ − γ_known)/g, s/m, with its standard error: the slope of the kinetic coefficient with speed, over
-/// that of the paper on which the tester was characterised. A slope leaves S, K and S − K at the pull speed
-/// as they are and adds g μ′ to the damping.
+/// Slope μ′ = (γ − γ_known)/g of the kinetic coefficient with speed, s/m, with its standard error. It is the
+/// slope less that of the paper on which the tester was characterised. A slope leaves S, K and S − K at the
+/// pull speed as they are and adds g μ′ to the damping.
 [[nodiscard]] Estimate slope_of_friction(const TesterEstimate& found,
                                          const estimate::SharedPrior::Coupling& known,
                                          double gravity_m_per_s2);
 
-/// Probability of a χ² at least this large if independent estimates of one number have only their standard
-/// errors. Each needs a value and an error.
+/// Probability that independent estimates of one number differ at least as much as these (χ² about their
+/// weighted mean) by their standard errors alone.
+/// \param estimates  at least two, each with a value and a standard error > 0.
 [[nodiscard]] double probability_of_agreement(std::span<const Estimate> estimates);
 
 /// Compares ω and γ/2ω of the test alone with the characterisation, and the pull speed with the plan. The
-/// speed is that of `with` if the characterisation is used for this test (TesterCheck::used), else of
-/// `alone`. \param alone  estimate without the characterisation. \param with  estimate with it. \param known
-/// the characterisation. \param tester  holds the planned speed, if there is one.
+/// speed is that of `with` if the characterisation is used (TesterCheck::used), else of `alone`.
+/// \param alone  estimate without the characterisation.
+/// \param with  estimate with it.
+/// \param known  the characterisation.
+/// \param tester  gives gravity and, if known, the planned speed.
 [[nodiscard]] TesterCheck check_tester(const TesterEstimate& alone, const TesterEstimate& with,
                                        const estimate::SharedPrior::Coupling& known,
                                        const model::Tester& tester);

@@ -30,13 +30,14 @@ struct MeanWithError {
   double count = 0.0;  ///< Of tests, ≥ 2.
 };
 
+/// Welch's test of mean A against mean B.
 /// \param a,b  at least one with a standard error > 0.
 [[nodiscard]] Welch welch(const MeanWithError& a, const MeanWithError& b);
 
 /// The difference in units of the scatter of single tests, without the bias of small samples
 /// [Hedges 1981, J. Educ. Stat. 6, 107].
 struct EffectSize {
-  double g = 0.0;  ///< J(ν) (mean A − mean B)/s_pooled.
+  double g = 0.0;  ///< J(ν) (mean A − mean B)/s_pooled; J: Hedges' correction, ν = n_A + n_B − 2.
   std::optional<Interval>
       interval;  ///< 95 %, by inverting the noncentral t [Cumming & Finch 2001,
                  ///< Educ. Psychol. Meas. 61, 532]; none where that has no answer in double.
@@ -60,7 +61,8 @@ struct Comparison {
   std::string reason;  ///< Why the other members are empty; set exactly then.
 };
 
-/// Requires two values of each material and a scatter > 0; otherwise only `reason` is set.
+/// Compares two materials by their single tests. Needs two values of each, and scatter in at least one;
+/// otherwise only `reason` is set.
 [[nodiscard]] Comparison compare(const Replicates& a, const Replicates& b);
 
 /// Probability that Student's t test with `count` tests of each material, two-sided at 5 %, finds a
@@ -69,13 +71,16 @@ struct Comparison {
 /// \param count  ≥ 2.
 [[nodiscard]] double power_of_t_test(double effect, int count);
 
-/// Smallest count that reaches the power; nullopt above kMostTestsNeeded. \param power  in (0, 1).
+/// Smallest number of tests of each material, ≥ 2, with which power_of_t_test() reaches `power`; nullopt if
+/// that takes more than kMostTestsNeeded.
+/// \param effect  ≥ 0, in standard deviations.
+/// \param power  in (0, 1).
 [[nodiscard]] std::optional<int> tests_needed(double effect, double power);
 
 /// Fisher's exact test of a 2 × 2 table: do A and B have equal shares of tests with a property, such as
-/// sticking? Two-sided p: the sum of the probabilities of all tables that are no more probable than this one,
-/// if A and B do not differ [Fisher 1935, J. R. Stat. Soc. 98, 39; hypergeometric distribution by
-/// Boost.Math].
+/// sticking? Two-sided p: of all tables with the same sums of rows and columns, the summed probability of
+/// those that are no more probable than this one, if A and B do not differ [Fisher 1935, J. R. Stat. Soc. 98,
+/// 39; hypergeometric distribution by Boost.Math].
 /// \param a_yes,a_no,b_yes,b_no  ≥ 0.
 /// \return  p; 1 if a row or a column of the table is empty.
 [[nodiscard]] double exact_p(unsigned a_yes, unsigned a_no, unsigned b_yes, unsigned b_no);

@@ -26,25 +26,32 @@ struct EscapeTrial {
   bool captured = false;
 };
 
+/// Result of escape_speeds().
 struct EscapeSpeeds {
   Estimate first_escape;   ///< m/s: pull speed at the onset of the first slip that did not stick again.
   Estimate of_mean_paper;  ///< m/s: threshold speed for the mean of S − K.
 };
 
-/// Estimates the threshold speed as the mean over the likelihood. Model: S − K is log-normal with this
-/// relative scatter, and so is each slip's threshold speed, which is proportional to it. The interval between
-/// the speed of the last captured slip and that of the first escape above it is not resolved; the variance of
-/// a uniform distribution over it is added to the scatter. The standard error is that of the curvature,
-/// combined with the effect of the scatter's own error, scatter/√(2(n − 1)).
+/// Threshold speed of the mean paper, from captured and escaped slips. Model: the S − K of a slip, and so its
+/// threshold speed, is log-normal with the relative scatter `scatter`. of_mean_paper is the mean over the
+/// likelihood. Its standard error is the likelihood's standard deviation, combined with the effect of the
+/// scatter's own error, scatter/√(2(n − 1)) for n trials. Between the fastest captured slip and the slowest
+/// escape above it the speed is not resolved: the variance of a uniform distribution over that interval is
+/// added to the scatter. first_escape has no standard error.
+///
+/// Both are absent, with the reason, if no slip escaped or none stuck before the first escape; of_mean_paper
+/// also if the scatter is 0 and no escape is faster than all captured slips.
 /// \param trials  in the order of time.
 /// \param scatter  standard deviation over mean of S − K, ≥ 0.
 [[nodiscard]] EscapeSpeeds escape_speeds(std::span<const EscapeTrial> trials, double scatter);
 
-/// Trials of a test on a belt whose speed changes. \param estimates  converged, with γ > 0.
+/// Trials of a test on a belt whose speed changes, in the order of time. Empty on a constant belt or if
+/// γ ≤ 0. Slips just before the belt stops are left out: no speed decides there.
+/// \param estimates  converged.
 [[nodiscard]] std::vector<EscapeTrial> escape_trials(const SlipEstimates& estimates);
 
-/// Relative scatter of S − K from slip to slip: standard deviation over mean, less the contribution of the
-/// scans' noise.
+/// Relative scatter of S − K over the slips that began from sticking: standard deviation over mean. The
+/// variance that the noise of the scans contributes is subtracted; 0 if it is larger than that found.
 /// \return nullopt for fewer than three slips, or if the mean is not positive.
 [[nodiscard]] std::optional<double> delta_mu_scatter(const SlipEstimates& estimates);
 

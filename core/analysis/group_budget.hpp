@@ -10,11 +10,13 @@
 
 namespace stickslip::analysis {
 
-/// Budget of a group's number: of S − K the mean by cycle where it has a standard error, else the mean of the
-/// tests. Of one test it is that test's. The standard error of the mean, by the scatter of the tests,
-/// replaces the noise; the systematic uncertainty is that of the group, and its parts are the means of those
-/// of the tests that have one. nullopt if no test has a value. \param tests  all tests, of which group has
-/// indices. \param quantity  index of quantities(), one of kBudgetQuantities.
+/// Uncertainty budget of the mean of a quantity over a group. For S − K this is the mean by cycle
+/// (SpeedGroup::by_cycle) where that has a standard error; else, and for other quantities, the mean of the
+/// tests. The standard error of the mean, by the scatter of the tests, replaces the noise. The systematic
+/// uncertainty is that of the group's mean; its parts are the means over the tests that have a systematic
+/// uncertainty. If a single test has a value, the budget is that test's; nullopt if none has.
+/// \param tests  all tests: the indices in `group` refer to them.
+/// \param quantity  index of quantities(), one of kBudgetQuantities.
 [[nodiscard]] std::optional<UncertaintyBudget> group_budget(std::span<const MeasuredTest> tests,
                                                             const SpeedGroup& group, std::size_t quantity);
 

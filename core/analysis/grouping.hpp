@@ -35,7 +35,7 @@ struct Pooling {
 struct MeasuredTest {
   std::optional<double> pull_speed_m_per_s;  ///< Nominal; nullopt if unknown.
   TestResults results;
-  SlipSums slips{};                      ///< From its table of cycles; empty without one.
+  SlipSums slips{};                      ///< slip_sums() of its cycles; zero without a table of cycles.
   std::string grade{};                   ///< Of the paper; empty if not stated.
   std::optional<double> stick_time_s{};  ///< mean_stick_time_s() of its cycles.
   BudgetFacts budget_facts{};
@@ -58,50 +58,60 @@ struct GroupQuantity {
 };
 
 /// Systematic uncertainty of a mean over estimates: the mean of theirs, since replicates do not decrease it.
-/// Estimates without one are left out: an unknown part is not zero. nullopt if none has one.
+/// Estimates without one are left out: an unknown uncertainty is not zero. nullopt if none has one.
 [[nodiscard]] std::optional<double> mean_systematic(std::span<const Estimate* const> estimates);
 
-/// pool_slips() of the tests, with the systematic uncertainty of those that have such slips.
+/// pool_slips() of MeasuredTest::slips. The systematic uncertainty of the mean is mean_systematic() of
+/// delta_mu over the tests whose slips.count is not 0.
 [[nodiscard]] PooledDeltaMu pool_tests(std::span<const MeasuredTest* const> tests);
 
 /// Tests at one pull speed, of one grade and one regime unless these are pooled.
 struct SpeedGroup {
-  std::optional<double> pull_speed_m_per_s;  ///< Of the first test.
-  std::vector<std::size_t> tests;            ///< Indices among all tests.
-  PooledDeltaMu by_cycle;                    ///< S − K pooled over all their slips.
-  std::array<GroupQuantity, kQuantityCount> quantities;
-  std::vector<std::string> grades;     ///< Of its tests, each once, in their order.
-  std::vector<model::Regime> regimes;  ///< Likewise.
+  std::optional<double> pull_speed_m_per_s;              ///< Of the first test.
+  std::vector<std::size_t> tests;                        ///< Indices among all tests.
+  PooledDeltaMu by_cycle;                                ///< pool_tests() of its tests.
+  std::array<GroupQuantity, kQuantityCount> quantities;  ///< In the order of quantities().
+  std::vector<std::string> grades;                       ///< Of its tests, each once, in their order.
+  std::vector<model::Regime> regimes;                    ///< Of its tests, each once, in their order.
 };
 
 /// Regime that decides about a test's group. Mixed counts as stick-slip: the two differ in whether a slip
 /// happened to escape, and leaving those tests out would bias S − K (docs/detector-limits.md).
 [[nodiscard]] model::Regime grouping_regime(model::Regime regime) noexcept;
 
-/// Groups in the order of rising speed, then of their first tests; tests without a speed form the last.
+/// Groups tests of one pull speed (within kSameSpeed of the group's first test), one grade and one
+/// grouping_regime(), unless these are pooled. Unknown speeds count as one speed. The groups are in the order
+/// of rising speed, those without a speed last; groups of equal speed in the order of their first tests.
 [[nodiscard]] std::vector<SpeedGroup> group_by_speed(std::span<const MeasuredTest> tests,
                                                      Pooling pooling = {});
 
-/// s_r of a quantity over all groups, each about its own mean.
+/// Pooled s_r of a quantity over the groups, each about its own mean; nullopt if no group has two values.
+/// \param quantity  index of quantities().
 [[nodiscard]] std::optional<double> pooled_over_groups(std::span<const SpeedGroup> groups,
                                                        std::size_t quantity);
 
-/// One speed with the index of its group in each material; nullopt where a material has no test at this
-/// speed.
+/// One speed, that of A where both have it, with the index of a group in each material; nullopt where a
+/// material has no further group at this speed.
 struct SpeedPair {
   std::optional<double> pull_speed_m_per_s;
   std::optional<std::size_t> a;
   std::optional<std::size_t> b;
 };
 
+/// Pairs each group of B with the first group of A at the same speed (kSameSpeed) that has no partner yet,
+/// whatever their grades and regimes; groups of unknown speed pair with each other. A group without a partner
+/// is a pair of its own. In the order of rising speed, unknown speeds last.
 [[nodiscard]] std::vector<SpeedPair> pair_speeds(std::span<const SpeedGroup> a,
                                                  std::span<const SpeedGroup> b);
 
 /// Comparison of S − K pooled by cycle at one speed, or the reason why there is none.
+/// \param pair  from pair_speeds() of `a` and `b`.
 [[nodiscard]] PooledComparison compare_pair_by_cycle(std::span<const SpeedGroup> a,
                                                      std::span<const SpeedGroup> b, const SpeedPair& pair);
 
 /// Comparison of one quantity at one speed, or the reason why there is none.
+/// \param pair  from pair_speeds() of `a` and `b`.
+/// \param quantity  index of quantities().
 [[nodiscard]] Comparison compare_pair(std::span<const SpeedGroup> a, std::span<const SpeedGroup> b,
                                       const SpeedPair& pair, std::size_t quantity);
 

@@ -1,6 +1,7 @@
 /// \file
-/// What a rung of the ladder (rung.hpp, docs/ladder.md) leaves open: systematic uncertainties by the distance
-/// to another rung, and findings.
+/// The ladder (docs/ladder.md): the description of a trace from which S, K and S − K come is a rung
+/// (rung.hpp). Here: systematic uncertainties for what a rung leaves open, such as the distance to another
+/// rung, and findings.
 #pragma once
 
 #include <string>
@@ -14,56 +15,66 @@
 
 namespace stickslip::analysis {
 
-/// Probability of the agreement of a test alone with the tester's characterisation below which the difference
-/// of both rungs is in the systematic uncertainties: 1 in 20 tests on paper without a slope has it, too.
+/// TesterCheck::probability below which the distance between the results with and without the tester's γ is
+/// added to the systematic uncertainties. Without a slope of K 1 in 20 tests lies below it by chance.
 inline constexpr double kSlopeLevel = 0.05;
 
-/// Standard error and systematic uncertainty together.
+/// Standard error and systematic uncertainty, added in quadrature; one that is unknown counts as 0.
 [[nodiscard]] double total_error(const Estimate& estimate);
 
-/// Adds to the systematic uncertainty of S and S − K by turning points how far the slips' own fits lie from
-/// them. \param fitted  no delta_mu where the fit did not converge.
+/// Adds to the systematic uncertainties of S and S − K, found by turning points, the distance between this
+/// S − K and the mean S − K of the fitted slips. Does nothing if either has no value.
+/// \param fitted  cycles from cycle_table(); delta_mu is NaN where the fit did not converge.
 void add_distance_to_fits(const base::LongColumn<detect::Cycle>& fitted, TestResults& results);
 
-/// Adds to the systematic uncertainties of S, K and S − K how far they lie from those of another rung.
+/// Adds to the systematic uncertainty of each of S, K and S − K its distance to the same result of another
+/// rung. A result that either rung lacks stays as it is.
 void add_distance(const TestResults& other_rung, TestResults& results);
 
-/// Adds to the systematic uncertainty of K by turning points how far it lies from the mean force, the other
-/// way to K that asks for no law. Of a sled that slides on the mean force is K. Of one that sticks and slips
-/// the distance is of the size of the error that friction changing within the slips makes
-/// (docs/detector-limits.md). S that was set above K by a bound becomes as uncertain.
-/// \param mean_force  may have no value.
+/// Adds to the systematic uncertainty of K, found by turning points, the distance between K and the mean
+/// force; the same to that of S if tell_bound() set S above K. The mean force is another estimate of K, which
+/// needs no friction law. Of a sled that slides on, the mean force is K. Of one that sticks and slips, the
+/// distance is of the size of the error that friction changing within the slips makes
+/// (docs/detector-limits.md). Does nothing without a mean force or without K.
+/// \param mean_force  as a coefficient; may have no value.
 void add_distance_to_mean_force(const Estimate& mean_force, TestResults& results);
 
-/// Whether the pull is so slow that S − K is half the drop whatever the damping.
+/// Whether the pull is so slow (Q < 0.2) that S − K is half the drop whatever the damping; false without Q.
 [[nodiscard]] bool may_hold_damping(const TestResults& results);
 
-/// Takes away what the damping tells, as it is held and not found, and adds to the systematic uncertainties
-/// of K and S − K what a typical γ leaves open: γ/2ω between 0 and twice that. Peak and trough hold; K =
-/// (trough + e peak)/(1 + e) with e = exp(−πγ/2ω) moves by π/2 of the amplitude for each unit of γ/2ω.
+/// For a fit whose γ/2ω was held at kTypicalGammaOver2Omega. Sets gamma_over_2omega, Q_threshold,
+/// threshold_speed and slip_speed_ratio_threshold to absent, since they were not found. Adds to the
+/// systematic uncertainties of K and S − K what γ/2ω between 0 and twice the typical value leaves open. Peak
+/// and trough are known; K = (trough + e peak)/(1 + e) with e = exp(−πγ/2ω) moves by π/2 of the amplitude for
+/// each unit of γ/2ω.
 void tell_held_damping(TestResults& results);
 
-/// Whether the sled may not have come to rest on the belt before its first slip. Friction K g takes it along:
-/// without damping c = K (1 − cos ωt), and the sled reaches the belt's speed v if v ≤ K g/ω, or r/ω ≤ K.
-/// Beyond that the force swings about K from the start on, up to 2K, and S is not in the trace. A fit that
-/// takes the first swing for a slip finds r/ω from 0.92 K to K. \param tester  of a test in which no slip was
-/// captured.
+/// Whether r/ω > 0.9 K, so that the sled may not have come to rest on the belt before its first slip. False
+/// if K has no value. Friction K g takes the sled along: without damping c = K (1 − cos ωt), and the sled
+/// reaches the belt's speed v if v ≤ K g/ω, or r/ω ≤ K. Beyond that the force swings about K from the start
+/// on, up to 2K, and S is not in the trace. A fit that takes the first swing for a slip finds r/ω from 0.92 K
+/// to K.
+/// \param tester  of a test in which no slip was captured.
 [[nodiscard]] bool may_never_have_stuck(const TesterEstimate& tester, const TestResults& results);
 
-/// Takes away what the first slip tells, the static coefficient too, and adds the finding kFastBelt.
+/// Sets to absent what the first slip would tell: static_coefficient, mu_s, delta_mu, Q, threshold_speed and
+/// pull_speed_measured. Adds the finding kFastBelt.
 void void_start(const TesterEstimate& tester, double gravity_m_per_s2, TestResults& results);
 
-/// S − K that is not told from zero lies between that and a bound: half of the bound, and as much systematic
-/// uncertainty. S is as far above K; Q and the threshold speed have no value.
+/// Sets S − K, which lies between 0 and `bound` and is not told from 0, to half of the bound, with as much
+/// systematic uncertainty. Sets S to K plus half the bound, with the systematic uncertainty of K and that
+/// half; without K, S stays. Neither has a standard error. Q and threshold_speed become absent.
 void tell_bound(double bound, TestResults& results);
 
-/// Fills misfit and misfit_place.
+/// Fills misfit, and misfit_place if the misfit has a place.
 void take_misfit(const Misfit& misfit, TestResults& results);
 
-/// Code kNotFitted. \param why  the fit has no results.
+/// Finding kNotFitted: S and K come from turning points, or, without delta_mu, have no value.
+/// \param why  reason why the fit has no results, as a clause.
 [[nodiscard]] base::Finding turning_points_finding(const Estimate& delta_mu, const std::string& why);
 
-/// Code kMisfit, with the likely cause.
+/// Finding kMisfit, with the likely cause.
+/// \param results  delta_mu already has its distance to turning points, by add_distance().
 [[nodiscard]] base::Finding misfit_finding(const Misfit& misfit, const TestResults& results);
 
 }  // namespace stickslip::analysis

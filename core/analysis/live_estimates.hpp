@@ -1,6 +1,6 @@
 /// \file
 /// Results of a test from the cycles of the live detector, by turning points.
-/// They give no ω and no γ, and each slip's end is that decided live. The scans are not used again.
+/// They give no ω and no γ. How a slip ended is taken from the live detector; no scan is fitted again.
 #pragma once
 
 #include <cstddef>
@@ -39,15 +39,17 @@ class LiveCycles {
 
 /// Settings of estimates_from_live().
 struct LiveSettlement {
-  bool first_counts = false;  ///< Means include the first slip.
+  bool first_counts = false;  ///< Means include the first slip and those after a hold.
   std::string reason;         ///< Reason given for all results that turning points do not determine.
-  Slack slack{};              ///< Slips with such a trough are in no mean.
+  Slack slack{};              ///< Slips with such a trough are not in the means of S, K and S − K.
 };
 
-/// Replaces estimate_in_sections(). Values are given to S, K and S − K (means over the live cycles), the
-/// scatter of S − K, and the amplitude (half the mean drop). A slip's end counts as unknown beside a gap, and
-/// for the last slip, in which the pull ended.
+/// Estimates of a test without a fit, in place of estimate_in_sections(). Values are given to S, K and S − K
+/// (means over the live cycles, TierMeans::fill()), the scatter of S − K, and the amplitude (half the mean
+/// drop of all slips). How a slip ended counts as unknown beside a gap, and for the last slip, in which the
+/// pull ended. The caller sets rung and rung_reason; the misfit is empty.
 /// \param slips  of the whole test, not empty; the result has one cycle for each.
+/// \param scratch  folder for the columns of a long test; empty: memory.
 [[nodiscard]] TestEstimates estimates_from_live(const estimate::Trace& trace,
                                                 const base::LongColumn<detect::Fall>& slips,
                                                 const base::LongColumn<detect::LiveCycle>& live,

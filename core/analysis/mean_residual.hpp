@@ -9,42 +9,47 @@
 
 namespace stickslip::analysis {
 
-/// Variance of σ² over σ⁴ times the scans that told σ: signal::scan_noise() has a relative standard error of
-/// 2/√n, by simulation of white noise, n from 600 on.
+/// n Var(σ²)/σ⁴ if σ was estimated from n scans. signal::scan_noise() has a relative standard error of 2/√n,
+/// by simulation of white noise, n from 600 on.
 inline constexpr double kVarianceOfNoise = 16.0;
 
+/// Residuals of a fit, averaged over the slips in bins of the time since the onset.
 class MeanResidual {
  public:
-  /// The residuals that follow are those of another slip.
+  /// Residuals added from now on are those of another slip.
   void begin_slip() noexcept { slip_ += 1.0; }
-  /// \param periods  time since the onset over the period of the oscillation, negative in the stick before.
-  /// \param sigmas  residual of one scan over the noise of a scan.
+  /// \param periods  time since the onset over the period of the oscillation, negative in the stick before;
+  ///         ignored outside −0.5 … 1.
+  /// \param sigmas  residual of one scan over the noise of a scan; counts as ±3 at most.
   void add(double periods, double sigmas) noexcept;
-  /// Adds those of other slips.
+  /// Adds the residuals of other slips.
   void add(const MeanResidual& others) noexcept;
 
-  /// χ² of the means of all bins that have enough slips, of freedom() degrees for noise alone; less where the
-  /// fit has taken a part of it.
+  /// χ² of the means of all bins with at least four slips. Of noise alone it has freedom() degrees of
+  /// freedom, or fewer, since the fit has taken a part of it.
   [[nodiscard]] double chi_squared() const noexcept;
-  [[nodiscard]] double freedom() const noexcept;  ///< Bins that have enough slips.
+  [[nodiscard]] double freedom() const noexcept;  ///< Bins with at least four slips.
   [[nodiscard]] double count() const noexcept;    ///< Scans in these bins.
 
-  /// Square of what repeats in each slip, in σ²: negative by chance.
+  /// Mean square of what repeats in each slip, in σ²: (χ² − freedom())/count(). May be negative by chance; 0
+  /// if no bin has four slips.
   [[nodiscard]] double square() const noexcept;
 
-  /// Standard error of square() where so many scans told σ.
+  /// Standard error of square(), in σ².
+  /// \param scans  number from which σ was estimated.
   [[nodiscard]] double error_of_square(double scans) const noexcept;
 
-  /// How far χ² lies above that of noise, in standard errors of a normal distribution, σ being told by so
-  /// many scans. [Wilson and Hilferty, PNAS 17:684–688, 1931]
+  /// How far χ² lies above that of noise, in standard deviations of a normal distribution; 0 if no bin has
+  /// four slips. [Wilson and Hilferty, PNAS 17:684–688, 1931]
+  /// \param scans  number from which σ was estimated.
   [[nodiscard]] double z(double scans) const noexcept;
 
-  /// Factor by which the errors of a fit are larger than the noise makes them, √(χ²/freedom); at least 1.
+  /// Factor by which what repeats makes the errors of a fit larger than noise does: √(χ²/freedom), ≥ 1.
   /// [Birge, Phys. Rev. 40:207–227, 1932]
   [[nodiscard]] double birge_ratio() const noexcept;
 
-  /// Frequency, over that of the oscillation, of the one sine that explains half of what repeats after the
-  /// onset; nullopt if none does.
+  /// Frequency, over that of the oscillation, of the sine between 2 and 20 that explains most of what repeats
+  /// after the onset; nullopt if it explains less than half.
   [[nodiscard]] std::optional<double> swing() const noexcept;
 
  private:

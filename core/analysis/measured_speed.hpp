@@ -2,7 +2,7 @@
 /// Pull speed from a speed channel, reduced to lines between points: a PullSpeed that the fits use like a
 /// plan.
 ///
-///     MeasuredSpeed measured{step_m_per_s, noise_m_per_s};
+///     MeasuredSpeed measured{MeasuredSpeed::resolution(noise_m_per_s, step_m_per_s)};
 ///     for (…) measured.add(time_s, speed_m_per_s);
 ///     if (const auto course = measured.course()) …
 ///
@@ -19,21 +19,24 @@
 
 namespace stickslip::analysis {
 
-/// Stores the points only, not the readings. Thread-bound.
+/// Makes the course of the pull speed from readings that are added one by one. Stores the points only, not
+/// the readings. Thread-bound.
 class MeasuredSpeed {
  public:
-  /// \param resolution_m_per_s  ≥ 0: largest error of a reading; the belt is at rest below it.
+  /// \param resolution_m_per_s  ≥ 0: largest error of a reading. A point that is no faster is at rest.
   explicit MeasuredSpeed(double resolution_m_per_s) : resolution_m_per_s_(resolution_m_per_s) {}
 
   /// Resolution of a channel: six standard deviations of a reading's noise, which is at least that of the
   /// rounding, step/√12.
   [[nodiscard]] static double resolution(double noise_m_per_s, double step_m_per_s) noexcept;
 
-  /// \param time_s  rises, from 0 s on.
+  /// \param time_s  0 for the first reading, then larger than that of the reading before.
+  /// \param speed_m_per_s  finite.
   void add(double time_s, double speed_m_per_s);
 
   /// Pull speed from time 0 on.
-  /// \return nullopt if the belt never pulled, or if more than PullSpeed::kMostPoints points are needed.
+  /// \return nullopt if the belt never pulled, as without readings, or if more than PullSpeed::kMostPoints
+  ///         points are needed.
   [[nodiscard]] std::optional<model::PullSpeed> course();
 
  private:

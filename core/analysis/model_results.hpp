@@ -17,11 +17,14 @@
 
 namespace stickslip::analysis {
 
-/// Largest residual in units of the scan noise up to which the model counts as describing the trace.
+/// Largest standard deviation of the residuals, over the noise of a scan, up to which the model counts as
+/// describing the trace.
 inline constexpr double kLargestResidualSigmas = 5.0;
 
-/// Whether the fit converged, its residuals agree with the noise of the scans, its damping is neither
-/// significantly negative nor overdamped, and no slip ended otherwise than its numbers say.
+/// Whether the fit converged, its residuals are at most kLargestResidualSigmas σ, its damping is neither
+/// significantly negative nor overdamped, and, on a constant belt, no slip certainly ended otherwise than its
+/// Q and the threshold [22] say.
+/// \param sigma  noise of one scan.
 [[nodiscard]] bool model_describes(const SlipEstimates& estimates, double sigma);
 
 /// Parts of a slip and the stick before it, in the order of time.
@@ -32,33 +35,40 @@ inline constexpr std::array<std::string_view, 4> kSlipPartNames{"rise", "peak", 
 /// slip.
 class Misfit {
  public:
-  /// Adds the fit of a section, or where it stopped. \param sigma  noise of one scan.
+  /// Adds the residuals of a section's fit. Of a fit that did not converge only their size counts.
+  /// \param sigma  noise of one scan.
   void add(const estimate::Trace& trace, const SlipEstimates& estimates, double sigma);
-  /// Adds that of other sections.
+  /// Adds the residuals of other sections.
   void add(const Misfit& others) noexcept;
 
-  /// Standard deviation of the residuals, in σ; 1 for noise alone.
+  /// Standard deviation of the residuals, in σ; 1 for noise alone, 0 without a fit.
   [[nodiscard]] double residual_sigmas() const noexcept { return residual_of(whole_); }
-  /// The same over one part of the slips; 0 unless the misfit of a section is significant. The fall is from
-  /// 90 to 10 % of the drop.
+  /// Standard deviation of the residuals in one part of the slips, in σ, over the sections whose residuals
+  /// are significantly large; 0 if none has such. The fall is from 90 to 10 % of the drop.
   [[nodiscard]] double residual_sigmas(SlipPart part) const noexcept {
     return residual_of(parts_[static_cast<std::size_t>(part)]);
   }
-  /// Part with the largest residuals; nullopt unless their size is significant.
+  /// Part with the largest residuals; nullopt unless their size is significant in the whole test and every
+  /// fit converged.
   [[nodiscard]] std::optional<SlipPart> place() const noexcept;
-  /// Systematic residual, in σ, with its standard error: √(residual² − 1), or what repeats if that is more.
+  /// Systematic residual, in σ, with its standard error: √(residual² − 1), at least 0; if repeats(), the root
+  /// of MeanResidual::square() where that is more. Absent if a fit did not converge, or without a fit.
   [[nodiscard]] Estimate systematic() const;
-  /// Whether size or repetition are larger than chance makes them, each in 1 % of the tests.
+  /// Whether the size of the residuals, or what repeats in each slip, is larger than chance makes it in 1 %
+  /// of the tests.
   [[nodiscard]] bool is_significant() const noexcept {
     return std::max(z_of(whole_), z_of_mean()) > kSignificant;
   }
-  /// The same, in 3 of 10⁵ tests each.
+  /// is_large() or repeats().
   [[nodiscard]] bool is_certain() const noexcept { return is_large() || repeats(); }
+  /// Whether the size of the residuals is larger than chance makes it in 3 of 10⁵ tests.
   [[nodiscard]] bool is_large() const noexcept { return z_of(whole_) > kCertain; }
+  /// Whether what repeats in each slip is larger than chance makes it in 3 of 10⁵ tests.
   [[nodiscard]] bool repeats() const noexcept { return z_of_mean() > kCertain; }
   [[nodiscard]] const MeanResidual& mean() const noexcept { return mean_; }
-  /// √(ratio² − 1) by Birge's ratio: what repeats adds to errors, which hold the size of the residuals
-  /// already; 0 unless significant.
+  /// Error that what repeats in each slip adds to a fit, in units of the fit's errors: √(ratio² − 1), with
+  /// Birge's ratio over the size of the residuals, which these errors contain already. 0 unless what repeats
+  /// is significant at 1 %.
   [[nodiscard]] double beyond_noise() const noexcept;
 
  private:
@@ -82,23 +92,39 @@ class Misfit {
 };
 
 /// Fills mu_s, mu_k, delta_mu, omega, gamma_over_2omega, Q, Q_threshold, threshold_speed,
-/// slip_speed_ratio_threshold, amplitude
-/// and delta_mu_scatter, each with its standard error, or the reason why it is absent. Where neighbouring
-/// slips are correlated the standard errors of S, K and S − K are those of means that wander. The systematic
-/// uncertainty of S and S − K is γ v/g: whether the damper's force counts at the slip onset is a convention
-/// that no trace can decide (here: spring only, [Penner 1995, (13)]). What repeats in each slip adds to the
-/// systematic uncertainty of what follows from the fit's parameters, and where no slip sticks again the creep
-/// before it to that of S and S − K. \param misfit  of this section. \param sigma  noise of one scan.
+/// slip_speed_ratio_threshold, amplitude and delta_mu_scatter, each with its standard error or the reason why
+/// it is absent; calls escape_results(). S, K and S − K are means over the slips that began from sticking. Of
+/// three or more the first and those after a hold are left out, unless estimates.first_counts, and so are
+/// slips that tell S − K too badly. Where neighbouring slips are correlated, the standard errors of S, K and
+/// S − K are those of means that wander.
+///
+/// The systematic uncertainty of S and S − K is γ v/g: whether the damper's force counts at the slip onset is
+/// a convention that no trace can decide (here: spring only, [Penner 1995, (13)]). If no slip stuck again,
+/// creep of the contact at 5 % of the belt's speed adds to it. If misfit.beyond_noise() is not 0, all that
+/// follows from the fit's parameters has a part for it.
+///
+/// If model_describes() is false, all of these are absent but the amplitude, then half the mean drop of
+/// `slips`; so are pull_speed_measured and the results of feature_results(). Q, Q_threshold and
+/// threshold_speed are absent if S − K is not positive, the latter two also if γ is not positive; Q and
+/// slip_speed_ratio_threshold if the pull speed changes; delta_mu_scatter with fewer than three slips.
+/// \param misfit  of this section.
+/// \param tester  only its gravity is read.
+/// \param sigma  noise of one scan.
 void model_results(std::span<const detect::Fall> slips, const SlipEstimates& estimates, const Misfit& misfit,
                    const model::Tester& tester, double sigma, TestResults& results);
 
-/// Fills escape_speed and escape_speed_corrected. \param estimates  converged.
+/// Fills escape_speed and escape_speed_corrected by escape_speeds(). Both are absent, with the reason, on a
+/// constant belt, if γ is not positive, and if delta_mu_scatter() is nullopt.
+/// \param estimates  converged.
 void escape_results(const SlipEstimates& estimates, TestResults& results);
 
-/// Sets all results of model_results() to absent, with this reason.
+/// Sets pull_speed_measured and the results of model_results() and feature_results() to absent, with
+/// `reason`.
 void no_model_results(const std::string& reason, TestResults& results);
 
-/// Table of cycles, one row for each slip. The caller sets the flags for spikes, gaps and saturation.
+/// Table of cycles, one row for each slip. Onset, capture, stick and slip times, S − K and slip_speed_ratio
+/// are NaN where the fit did not converge, and for a slip that did not begin from sticking or has no window.
+/// The caller sets first_scan, the evidence of capture, and the flags for spikes, gaps and saturation.
 [[nodiscard]] std::vector<detect::Cycle> cycle_table(const estimate::Trace& trace,
                                                      std::span<const detect::Fall> slips,
                                                      const SlipEstimates& estimates);

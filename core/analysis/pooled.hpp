@@ -16,12 +16,14 @@ namespace stickslip::analysis {
 /// without a standard error.
 [[nodiscard]] std::optional<Interval> mean_interval(const PooledDeltaMu& pooled);
 
+/// Result of compare_pooled().
 struct PooledComparison {
   std::optional<Welch> welch;  ///< Test of the difference of the pooled means.
   std::string reason;          ///< Why there is none; set exactly then.
 };
 
-/// Requires of each group two tests with a slip after the first.
+/// Compares the pooled S − K of two groups of tests, A and B. Needs in each two tests with slips that count
+/// (slip_sums()), and a standard error > 0 in at least one; otherwise only `reason` is set.
 [[nodiscard]] PooledComparison compare_pooled(const PooledDeltaMu& a, const PooledDeltaMu& b);
 
 }  // namespace stickslip::analysis

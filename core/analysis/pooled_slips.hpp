@@ -24,11 +24,13 @@ struct SlipSums {
   double square_sum = 0.0;  ///< Of squares about the test's own mean.
   double captured_count = 0.0;
   double captured_sum = 0.0;
-  double escaped_count = 0.0;  ///< Slips that were not captured, without the last one, whose end is unknown.
+  double escaped_count = 0.0;  ///< Slips without kCycleCaptured, unknown ends too, but for the test's last.
 };
 
-/// \param cycles  rows of TestAnalysis::cycles(), by index; slips without S − K are ignored.
-/// \param with_first  includes the first slip of the pull, which is often not representative [Penner 1995].
+/// Sums of one test. Slips without S − K are ignored.
+/// \param cycles  rows of TestAnalysis::cycles(), by index.
+/// \param with_first  includes slips with kCycleIsFirst: the first of the pull, which is often not
+///        representative [Penner 1995], and those after a hold.
 template <typename Cycles>
 [[nodiscard]] SlipSums slip_sums(const Cycles& cycles, bool with_first = false) {
   SlipSums sums;
@@ -51,8 +53,8 @@ template <typename Cycles>
   return sums;
 }
 
-/// Geometric mean of the times for which the sled stuck before the slips that slip_sums() counts; absent if
-/// none is known.
+/// Geometric mean of the times, s, for which the sled stuck before the slips that slip_sums() counts. Slips
+/// whose time is unknown or 0 are left out; nullopt if none is left.
 template <typename Cycles>
 [[nodiscard]] std::optional<double> mean_stick_time_s(const Cycles& cycles, bool with_first = false) {
   double log_sum = 0.0;
@@ -70,11 +72,11 @@ template <typename Cycles>
 
 /// Result of pool_slips().
 struct PooledDeltaMu {
-  Estimate mean;                  ///< Over the slips of all tests, each counted once.
-  Estimate scatter;               ///< Standard deviation from slip to slip.
-  std::size_t test_count = 0;     ///< Tests with such a slip.
-  std::size_t slip_count = 0;     ///< Slips with an S − K.
-  std::size_t escaped_count = 0;  ///< Those among them that did not end in sticking.
+  Estimate mean;                  ///< Of S − K over the slips of all tests, each counted once.
+  Estimate scatter;               ///< Standard deviation from slip to slip; absent for fewer than two slips.
+  std::size_t test_count = 0;     ///< Tests whose SlipSums::count is not 0.
+  std::size_t slip_count = 0;     ///< Sum of SlipSums::count.
+  std::size_t escaped_count = 0;  ///< Sum of SlipSums::escaped_count.
   Estimate captured_mean;         ///< Over the captured slips only; biased upwards if some slips escape.
 };
 

@@ -23,22 +23,22 @@ struct Interval {
   double high = 0.0;
 };
 
-/// The value farthest from the mean, if it exceeds Grubbs' limit. It is reported, never removed.
+/// The value farthest from the mean, where its statistic exceeds Grubbs' limit. It stays in all statistics.
 struct Outlier {
   std::size_t index = 0;   ///< Among the values given.
   double statistic = 0.0;  ///< |value − mean|/s.
   double critical = 0.0;   ///< Grubbs' limit for this number of values.
 };
 
-/// Statistics of repeated tests.
+/// Statistics of repeated tests. A single value has count and mean alone.
 struct Replicates {
   std::size_t count = 0;
   double mean = 0.0;
-  std::optional<double> standard_deviation;  ///< s_r, with divisor n − 1; nullopt for a single value.
+  std::optional<double> standard_deviation;  ///< s_r, with divisor n − 1.
   std::optional<double> repeatability;       ///< r = 2.8 s_r.
-  std::optional<Interval> mean_interval;     ///< 95 %, Student's t [Student 1908].
-  std::optional<double> coverage_factor;     ///< k of that interval, mean ± k s_r/√n.
-  std::optional<Outlier> outlier;
+  std::optional<Interval> mean_interval;     ///< Of the mean; 95 %, Student's t [Student 1908].
+  std::optional<double> coverage_factor;     ///< k of mean_interval, mean ± k s_r/√n.
+  std::optional<Outlier> outlier;            ///< Absent with fewer than three values, and if all are equal.
 };
 
 /// \param values  at least one, finite.

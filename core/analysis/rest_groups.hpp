@@ -1,6 +1,6 @@
 /// \file
-/// Slips of a test whose belt changed its speed, grouped by how long the contact rested before them: what
-/// such a test says about the friction law.
+/// Slips of a test whose belt changed its speed or stood still, in groups of one speed or one hold: what such
+/// a test says about the friction law.
 ///
 ///     for (const RestGroup& group : group_by_rest(rested_slips(cycles), results)) …
 #pragma once
@@ -22,27 +22,32 @@ struct RestedSlip {
   double stick_time_s = 0.0;
   double delta_mu = 0.0;        ///< NaN if not estimated.
   double delta_mu_error = 0.0;  ///< NaN without a fit.
-  double peak = 0.0;
-  double trough = 0.0;
-  bool held = false;  ///< The belt stood still before it.
+  double peak = 0.0;            ///< Coefficient, as Cycle::peak.
+  double trough = 0.0;          ///< Coefficient, as Cycle::trough.
+  bool held = false;            ///< The belt stood still before it.
 };
 
+/// The slips at one speed that follow no hold; or a single slip after a hold.
 struct RestGroup {
-  double pull_speed_m_per_s = 0.0;  ///< Mean.
+  double pull_speed_m_per_s = 0.0;  ///< Mean over the slips at this speed that follow no hold.
   double stick_time_s = 0.0;        ///< Geometric mean.
   double S = 0.0;                   ///< Mean.
-  /// Of that mean by the scatter from slip to slip; of a single slip that scatter.
+  /// Standard error of S by the scatter from slip to slip; of a single slip that scatter.
   double S_error = 0.0;
-  /// Systematic part of S beyond that of the test's. Of a fit: omega, gamma and stick rate make each S − K
-  /// off by the same share. By turning points: by how much less it overshoots than the mean peak.
+  /// Systematic part of S beyond that of the test's S; its sign tells the direction. By a fit: ω, γ and stick
+  /// rate make each S − K off by the same share. By turning points: by how much less the peak exceeds S here
+  /// than the mean peak exceeds the test's S.
   double S_systematic = 0.0;
-  std::optional<double>
-      K;  ///< Mean of the slips at this speed that follow no hold; absent if the test has none.
-  double K_error = 0.0;  ///< Of that mean against those of other speeds.
+  /// Mean over the slips at this speed that follow no hold. Absent if the test has no K, or if fewer than
+  /// four of these slips have an S − K, as where the coupling went slack.
+  std::optional<double> K;
+  double K_error = 0.0;  ///< Standard error of K without that of the test's K, which all groups share.
   bool held = false;     ///< A single slip after a hold.
 };
 
-/// \param cycles  of a test whose belt changed its speed: others do not know the speed of each slip.
+/// The slips whose pull speed and stick time are known, in the order of the cycles.
+/// \param cycles  rows of TestAnalysis::cycles(), by index. They hold pull speeds only where the speed
+/// changed or was measured.
 template <typename Cycles>
 [[nodiscard]] std::vector<RestedSlip> rested_slips(const Cycles& cycles) {
   std::vector<RestedSlip> slips;
@@ -56,18 +61,26 @@ template <typename Cycles>
   return slips;
 }
 
-/// Whether the fastest pull is faster than the slowest by more than twice kSameSpeed.
+/// Whether the fastest pull is faster than the slowest by more than 2 %, twice kSameSpeed.
 [[nodiscard]] bool have_several_speeds(std::span<const RestedSlip> slips);
 
-/// Each slip after a hold is a group of its own: it has its place on the paper and its time at rest. The
-/// others are grouped by their speed: speeds that follow each other within kSameSpeed are one, unless they
-/// spread over more than twice that, as on a ramp; fewer than four slips make no group, and fewer than four
-/// of which none was slack no K. Slips after a hold at a speed without a group are left out. K of a speed is
-/// the test's K and by how much the middles of the falls at this speed lie off the mean of all; without a
-/// damping the typical one is taken. S is K and the fitted S − K of the slips. By turning points it comes
-/// from the peaks, which overshoot it as the mean peak overshoots the test's S: a trough may be that of a
-/// slack coupling. Without a K all overshoot alike. \param results  of the test. \return empty where they
-/// have no S, and no K though they are fitted.
+/// Groups slips by their pull speed; each slip after a hold is a group of its own, since it has its own place
+/// on the paper and its own time at rest.
+///
+/// Neighbouring speeds within kSameSpeed, 1 %, are one speed. Speeds that spread over more than twice that,
+/// as on a ramp, make no group. At one speed four slips that follow no hold are needed; with fewer, its slips
+/// after holds are left out, too.
+///
+/// K of a speed is the test's K plus what the K by turning points of these slips is on average above that of
+/// all slips that follow no hold. It takes the damping of the results, or the typical one.
+///
+/// S by a fit is that K plus the mean S − K of the slips; slips without S − K or its error are left out. S by
+/// turning points comes from the peak alone, since a trough may be that of a slack coupling: the peak is
+/// K + √((S − K)² + u²), u proportional to the pull speed and such that the mean peak gives the test's S.
+/// Without a K each peak exceeds S by as much as the mean peak exceeds the test's S.
+///
+/// \param results  of the test.
+/// \return in the order of rising speed; empty if the results have no S by turning points, or no K by a fit.
 [[nodiscard]] std::vector<RestGroup> group_by_rest(std::span<const RestedSlip> slips,
                                                    const TestResults& results);
 

@@ -17,18 +17,20 @@
 
 namespace stickslip::analysis {
 
-/// A value with its uncertainties, or the reason why it is absent.
+/// A value with its uncertainties, or the reason why it is absent. Before it is filled it has neither.
 struct Estimate {
   std::optional<double> value;
   std::optional<double> standard_error;          ///< Random: decreases with replicates.
-  std::optional<double> systematic_uncertainty;  ///< From calibration, mass, conventions; constant.
-  std::string reason;                            ///< Set exactly when there is no value.
+  std::optional<double> systematic_uncertainty;  ///< Replicates do not decrease it; UncertaintySource.
+  std::string reason;                            ///< Why there is no value; empty if there is one.
   SystematicParts systematic_parts{};            ///< What makes the systematic uncertainty, as far as known.
 
+  /// Without a standard error. Absent if the number is not finite.
   [[nodiscard]] static Estimate of(double number) {
     if (!std::isfinite(number)) return none("not finite");
     return {number, {}, {}, {}};
   }
+  /// Absent if the number is not finite; without a standard error if that is not.
   [[nodiscard]] static Estimate of(double number, double error) {
     if (!std::isfinite(number)) return none("not finite");
     return {number, std::isfinite(error) ? std::optional<double>{error} : std::nullopt, {}, {}};
@@ -46,7 +48,7 @@ struct ResultName {
   bool is_diagnostic = false;  ///< Another way to a quantity that has a result of its own.
 };
 
-/// Reason for the absence of Q on a ramp, where each slip has its own.
+/// Reason why Q and slip_speed_ratio_threshold are absent where the belt had several speeds.
 inline constexpr std::string_view kSpeedChanges = "the pull speed changes";
 
 /// Results of one test. Symbols as in docs/glossary.md.
@@ -55,18 +57,21 @@ struct TestResults {
   std::string regime_reason;  ///< What decided the regime; text for the user.
   Rung rung = Rung::kNone;    ///< Where S, K and S − K come from.
   std::string rung_reason;    ///< Why not a higher rung; empty on the highest. Text for the user.
-  std::string
-      misfit_place;  ///< Part of the slip with the largest misfit: rise, peak, fall or trough; or empty.
+  /// Part of the slip with the largest residuals, "rise", "peak", "fall" or "trough"; empty unless their size
+  /// is significant.
+  std::string misfit_place;
 
-  Estimate transition_time;        ///< s after the record's first scan, onset of the escape; only for mixed.
+  /// s after the record's first scan, only for mixed: onset of the first slip that ended otherwise than the
+  /// one before, or its peak if the onset is not known.
+  Estimate transition_time;
   Estimate cycle_count;            ///< Falls that are slips.
-  Estimate stick_cycle_count;      ///< Those that ended in sticking.
-  Estimate period_median;          ///< s
-  Estimate oscillation_frequency;  ///< Hz, cycles over time.
+  Estimate stick_cycle_count;      ///< Slips that ended in sticking.
+  Estimate period_median;          ///< s, from peak to peak.
+  Estimate oscillation_frequency;  ///< Hz, cycles over time; ω/2π of a ring-down with a fit.
   Estimate static_coefficient;     ///< Traditional, by the method.
   Estimate kinetic_coefficient;    ///< Traditional, by the method.
-  Estimate mu_s;                   ///< S of the model, corrected.
-  Estimate mu_k;                   ///< K of the model, corrected.
+  Estimate mu_s;                   ///< S of the model: mean over the slips, from `rung`.
+  Estimate mu_k;                   ///< K of the model: mean over the slips, from `rung`.
   Estimate delta_mu;               ///< S − K.
   Estimate amplitude;              ///< Half the mean range of the oscillation, coefficient.
   Estimate gamma_over_2omega;
@@ -80,25 +85,26 @@ struct TestResults {
   Estimate gap_count;
   Estimate lost_scan_count;
   Estimate scan_rate_measured;  ///< Hz, from clocks.
-  Estimate escape_speed;        ///< m/s, at the first slip that did not stick; where the speed changes.
-  Estimate
-      escape_speed_corrected;  ///< m/s, threshold speed of the mean paper, from that slip and all captures.
+  /// m/s, where the pull speed changes: that at the onset of the first slip that did not stick again.
+  Estimate escape_speed;
+  /// m/s, where the pull speed changes: threshold speed for the mean S − K, from slips whose end is known.
+  Estimate escape_speed_corrected;
 
   // From features of the cycles that stick, core/analysis/cycle_features.
   Estimate delta_mu_from_amplitude;     ///< S − K by the amplitude ratio [17].
   Estimate delta_mu_from_timing;        ///< S − K by the period.
   Estimate delta_mu_from_slip_speed;    ///< S − K by the slip-to-stick speed ratio [18].
-  Estimate delta_mu_combined;           ///< The three, weighted by condition number and scatter.
+  Estimate delta_mu_combined;           ///< Mean of these three, by condition number and scatter.
   Estimate mu_k_from_mean;              ///< K: the mean, corrected for the bias by damping.
   Estimate mu_s_from_amplitude;         ///< S: mu_k_from_mean + delta_mu_from_amplitude.
   Estimate pull_speed_measured;         ///< m/s, from the stick rate and ω₀.
   Estimate slip_speed_ratio_threshold;  ///< Smallest ratio [18] of a slip that ends in sticking.
 
   Estimate mu_slope;  ///< s/m, μ′ = ∂μ_k/∂v, relative to the paper of the tester's characterisation.
-  /// Systematic residual of the fit, in standard deviations of the scan noise: √(residual² − 1), 0 for noise
-  /// alone.
+  /// Systematic residual of the fit, in standard deviations of the scan noise, 0 for noise alone:
+  /// √(residual² − 1), or what certainly repeats in each slip if that is more.
   Estimate misfit;
-  Estimate smallest_slip;  ///< Drop of the force from which on a slip would have been counted.
+  Estimate smallest_slip;  ///< Smallest drop that would have been counted as a slip; coefficient.
 
   std::vector<base::Finding> findings;  ///< The most severe first; filled by base::add().
 

@@ -10,10 +10,10 @@
 namespace stickslip::analysis {
 
 enum class Rung {
-  kNone,             ///< No slip, so neither S nor K of the model.
-  kTurningPoints,    ///< Peaks and troughs of the cycles: always there.
+  kNone,             ///< No S and K: no slip, too few scans, or scans that void the results.
+  kTurningPoints,    ///< Peaks and troughs of the cycles; wherever there are slips.
   kTwoParameterLaw,  ///< Fit with constant S and K; γ is held: the tester's, or a typical one.
-  kLawWithSlope,     ///< Fit with a free γ, which holds the slope of K with speed: γ = γ_tester + g μ′.
+  kLawWithSlope,  ///< Fit with a free γ, which includes the slope of K with speed: γ = γ_tester + g μ′.
 };
 
 inline constexpr std::array<std::pair<Rung, std::string_view>, 4> kRungNames{{

@@ -21,9 +21,8 @@
 
 namespace stickslip::analysis {
 
-/// Slips of a section, which share ω, γ and stick rate; at least a minute of stick-slip. From so many slips
-/// the shared parameters are ten times more precise than those of each slip, which would gain nothing from
-/// more.
+/// Most slips of a section; they share ω, γ and stick rate. From so many slips, a minute of stick-slip, the
+/// shared parameters are ten times more precise than those of each slip, which would gain nothing from more.
 inline constexpr std::size_t kMostSlipsTogether = 1024;
 
 /// Combined estimates of all sections.
@@ -31,27 +30,32 @@ struct TestEstimates {
   /// Only the results of model_results() and feature_results(). Means over sections, weighted by their slips;
   /// absent if one section has no value.
   TestResults results;
-  base::LongColumn<double> log_likelihood_ratios;  ///< Captured over free, one fewer than slips.
+  base::LongColumn<double> log_likelihood_ratios;  ///< Captured over free, one fewer than slips; 0: unknown.
   base::LongColumn<detect::Cycle> cycles;          ///< One for each slip, as from cycle_table().
   base::LongColumn<double> onset_errors_s;         ///< Standard error of each onset; NaN if unknown.
   std::int64_t captured = 0;                       ///< Slips that ended in sticking.
-  bool model_describes = true;                     ///< It does each section, and S is not below K.
-  Rung rung = Rung::kLawWithSlope;
-  std::string rung_reason;  ///< Why not a higher rung.
-  Misfit misfit;            ///< Of all sections.
+  /// The model describes each section, S is not clearly below K, and, if slips stick, S − K exceeds its
+  /// standard error.
+  bool model_describes = true;
+  Rung rung = Rung::kLawWithSlope;  ///< Set by the caller, with rung_reason.
+  std::string rung_reason;          ///< Why not a higher rung.
+  Misfit misfit;                    ///< Of all sections.
   /// Estimate of the tester's parameters; nullopt if the fit of a section did not converge.
   std::optional<TesterEstimate> tester;
 };
 
-/// How estimate_in_sections() goes about it.
+/// Settings of estimate_in_sections().
 struct SectionSettings {
-  std::filesystem::path scratch{};        ///< Folder for the columns of a long test; empty: memory.
-  std::size_t most = kMostSlipsTogether;  ///< Slips of a section, > 2.
-  bool first_counts = false;              ///< Means include the first slip of the test.
-  bool on_threads = false;  ///< Fits the next section beside this one; the estimates are the same.
+  std::filesystem::path scratch{};  ///< Folder for the columns of a long test; empty: memory.
+  /// Most slips of a section, > 2. Where the pull speed changes, all slips are one section whatever this is.
+  std::size_t most = kMostSlipsTogether;
+  bool first_counts = false;  ///< Means include the first slip of the test.
+  bool on_threads = false;    ///< Fits the next section beside this one; the estimates are the same.
 };
 
+/// Fits the slips section by section and combines the estimates.
 /// \param slips  falls that are slips, in the order of time, not empty. \param sigma  noise of one scan, > 0.
+/// \param prior  of ω, γ and the stick rate; may be empty.
 [[nodiscard]] TestEstimates estimate_in_sections(const estimate::Trace& trace,
                                                  const base::LongColumn<detect::Fall>& slips, double sigma,
                                                  const estimate::SharedPrior& prior,

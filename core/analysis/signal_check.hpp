@@ -15,33 +15,35 @@
 
 namespace stickslip::analysis {
 
+/// What check_signal() finds; each member is absent if it is not found.
 struct SignalCheck {
-  std::optional<signal::HeldValues> clipped;
-  std::optional<signal::HeldValues> frozen;
-  std::optional<double> coarse_noise;  ///< Noise of a scan in steps, if it is too small.
-  std::optional<double> begins_at;     ///< First scans over the largest, if they are in mid-pull.
+  std::optional<signal::HeldValues> clipped;  ///< The highest level, where scans stay too often.
+  std::optional<signal::HeldValues> frozen;   ///< The value that stood still.
+  std::optional<double> coarse_noise;  ///< Noise of a scan in steps of the converter, where below a quarter.
+  std::optional<double> begins_at;     ///< First scan over the largest, where the trace begins in mid-pull.
   std::optional<NoPull> no_pull;
 
   /// Whether the scans tell neither regime nor coefficients.
   [[nodiscard]] bool voids() const noexcept { return no_pull || held(); }
-  /// The values that are no measurement.
+  /// The values that are no measurement: frozen ones, else clipped ones; absent without either.
   [[nodiscard]] const std::optional<signal::HeldValues>& held() const noexcept {
     return frozen ? frozen : clipped;
   }
 };
 
 /// \param trace  without spikes; scans at a rail are not usable.
-/// \param measured  its scans as they came: what replaces a spike lies on no step.
+/// \param measured  the same scans with their spikes: what replaces a spike lies on no step.
 /// \param saturated  not 0 for a scan at a rail.
-/// \param step_coefficient  of the converter; 0 if unknown.
+/// \param step_coefficient  one step of the converter; 0 if unknown, then it is found from `measured`.
 [[nodiscard]] SignalCheck check_signal(const estimate::Trace& trace, const base::LongColumn<double>& measured,
                                        const base::LongColumn<std::uint8_t>& saturated,
                                        double step_coefficient, double scan_rate_Hz);
 
-/// Takes away what the scans do not tell where values are held or nothing was pulled: regime and
-/// coefficients, with the findings on them.
+/// If check.voids(): removes regime, rung, all findings so far, and all estimates but the counts of spikes,
+/// gaps and lost scans and the scan rate. A clipped pull also keeps its cycle count, period and frequency.
 void void_results(const SignalCheck& check, TestResults& results);
 
+/// Call after void_results(), which removes findings.
 void add_signal_findings(const SignalCheck& check, std::size_t scan_count, TestResults& results);
 
 }  // namespace stickslip::analysis

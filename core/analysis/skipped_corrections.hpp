@@ -17,8 +17,9 @@ namespace stickslip::analysis {
 /// Each flag that is true switches one correction off.
 struct SkippedCorrections {
   bool spikes = false;  ///< Spikes stay in the trace; otherwise they are replaced, and fits leave them out.
-  bool drift = false;   ///< Drift stays; otherwise a significant drift is subtracted before the fits.
-  bool first_slip = false;  ///< Means include the first slip; otherwise only if it is the only one.
+  bool drift = false;   ///< Drift stays; otherwise, at constant pull speed, a significant one is subtracted.
+  /// Means include the first slip and those after holds; otherwise only where there are too few others.
+  bool first_slip = false;
 
   bool operator==(const SkippedCorrections&) const = default;
   [[nodiscard]] bool none() const { return *this == SkippedCorrections{}; }

@@ -37,7 +37,8 @@ struct SlipEstimates {
   std::vector<std::size_t> window_of_slip;    ///< Index into `windows` for each slip, or kNoWindow.
   estimate::SlipFit fit;
   model::SharedParameters guess;  ///< By turning points and slopes: where the fit began.
-  /// Fit of one S and one K to all slips but the first; nullopt if the slips differ by more than noise.
+  /// Fit of one S and one K to all slips but the first (with it if first_counts). Nullopt if the slips differ
+  /// by more than noise, one did not end in sticking, they are fewer than three, or the pull speed changes.
   std::optional<estimate::UniformFit> uniform;
   model::BeltMotion belt;     ///< Belt speed over the time of the trace.
   bool first_counts = false;  ///< Means include the first slip.
@@ -46,7 +47,7 @@ struct SlipEstimates {
 
   /// The tester's parameters, from `uniform` if present, else from `fit`. Requires fit.converged.
   [[nodiscard]] TesterEstimate tester() const;
-  /// S of a slip: c at its onset plus a/g, the friction that accelerates the sled with the belt.
+  /// S of a slip: c at its onset plus a/g, the friction that gives the sled the belt's acceleration a.
   [[nodiscard]] double static_coefficient(const estimate::SlipWindow& window) const;
 };
 
@@ -54,6 +55,7 @@ struct SlipEstimates {
 [[nodiscard]] estimate::SharedPrior held_damping(const estimate::Trace& trace,
                                                  const base::LongColumn<detect::Fall>& slips);
 
+/// Decides how each slip ended and fits the model. Where no fit succeeds, `fit.converged` is false.
 /// \param slips  falls that are slips, in the order of time, not empty.
 /// \param sigma  noise of one scan, > 0.
 /// \param prior  of ω, γ and the stick rate.

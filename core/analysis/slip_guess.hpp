@@ -13,18 +13,19 @@ namespace stickslip::analysis {
 
 /// The scan nearest to a fractional position; scan 0 for a negative one.
 [[nodiscard]] std::size_t scan_at(double position);
+/// Mean scan rate of the trace without its gaps. \param trace  of two scans at least.
 [[nodiscard]] double scans_per_s(const estimate::Trace& trace);
 
-/// Level from which the force rises to the peak: the median about the turning point, which up to two spikes
-/// do not affect.
+/// Level from which the force rises to the peak: the median of the scans about the turning point, which a
+/// single spike does not affect.
 [[nodiscard]] double level_before(const estimate::Trace& trace, const detect::Fall& fall);
 
 /// Stick rate at the largest belt speed, 1/s: median slope of the rises, each between 30 and 70 % of its
 /// height, where the sled sticks if it does at all.
 [[nodiscard]] double slope_of_sticks(const estimate::Trace& trace, std::span<const detect::Fall> slips);
 
-/// ω from half periods, γ of the paper's tester, and the stick rate from the loading, or from the sticks if
-/// the trace begins after the loading.
+/// ω from half periods, the typical γ/2ω, and the stick rate from the loading, or from the sticks if the
+/// trace begins after the loading or the pull speed changes.
 /// \param slips  not empty.
 [[nodiscard]] model::SharedParameters first_guess(const estimate::Trace& trace,
                                                   std::span<const detect::Fall> slips);
@@ -41,7 +42,8 @@ namespace stickslip::analysis {
 [[nodiscard]] double trough_at(const estimate::Trace& trace, const detect::Fall& slip,
                                const model::SharedParameters& shared);
 
-/// Typical S − K: the median over slips, by the amplitude [2], of those faster than the belt.
+/// Typical S − K: the median of √(amplitude² − (r/ω)²) [2] over the slips whose amplitude exceeds r/ω, the
+/// belt's part; the largest amplitude if none does.
 [[nodiscard]] double typical_delta_mu(const estimate::Trace& trace, std::span<const detect::Fall> slips,
                                       const model::SharedParameters& shared);
 

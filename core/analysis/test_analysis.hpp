@@ -41,8 +41,8 @@ struct AnalysisSettings {
   model::Tester tester;
   model::Method method;
   /// Estimator of S, K and S − K, of each cycle and of the test. Only kFit fits the whole test at its end.
-  /// With the other, and where the fit does not describe the test, results come from cycles by turning
-  /// points: no ω, no γ and no result that needs them.
+  /// With the other, where the fit does not describe the test, and where the coupling went slack, results
+  /// come from cycles by turning points: no ω, no γ and no result that needs them.
   detect::EstimatorTier estimator = detect::EstimatorTier::kFit;
   estimate::SharedPrior prior;  ///< Of the tester's parameters; may be empty.
   SkippedCorrections skipped;   ///< Corrections to leave out, to show their effect.
@@ -56,20 +56,22 @@ struct AnalysisSettings {
   std::optional<double> speed_step_m_per_s;
 };
 
-/// Thread-bound. Memory grows with the test by about 34 bytes a scan and 0.4 kB a slip; with a scratch folder
-/// only by 8 bytes a spike and for 64 scans, and all functions may throw std::system_error.
+/// The analysis of one test. Thread-bound. Memory grows with the test by about 34 bytes a scan and 0.4 kB a
+/// slip. With a scratch folder it grows by 16 bytes a spike, 24 bytes a gap and 8 bytes for 64 scans (and by
+/// the slips where the pull speed changes), and functions may throw std::system_error.
 class TestAnalysis {
  public:
   /// \throws std::invalid_argument unless the rate is positive and finite.
   explicit TestAnalysis(const AnalysisSettings& settings);
 
-  /// The pull speed at the next scan, m/s; NaN if unknown. Call before each add() if
-  /// settings.speed_step_m_per_s is set, else never.
+  /// The pull speed at the next scan, m/s; NaN if unknown, which counts as the speed before it, or 0 at the
+  /// first scan. Call before each add() if settings.speed_step_m_per_s is set, else never.
   void speed(double speed_m_per_s);
-  /// \param index        rises; a jump is a gap. \param coefficient calibrated; must be finite.
+  /// The next scan.
+  /// \param index        rises; before a jump call gap(). \param coefficient  calibrated; must be finite.
   /// \param saturated    the converter was at a rail.
   void add(base::ScanIndex index, double coefficient, bool saturated);
-  /// Scans [first, first + count) are missing.
+  /// Scans [first, first + count) are missing. Call between the add() before them and the one after.
   /// \param estimated  the count comes from a clock.
   void gap(base::ScanIndex first, std::int64_t count, bool estimated = false);
 
@@ -78,21 +80,24 @@ class TestAnalysis {
   /// Cycles completed since the last call, as the detector sees them live; finish() refines them. A cycle is
   /// complete when the next slip is seen, or the oscillation has died away.
   [[nodiscard]] std::vector<detect::Cycle> take_new_cycles();
-  /// Falls of the force detected since the last call, LiveDetector::kFallDelayScans after they happened.
+  /// Falls of the force detected since the last call. A fall is detected LiveDetector::kFallDelayScans after
+  /// the force has fallen by the hysteresis; whether it is a slip is not known yet.
   [[nodiscard]] std::vector<detect::FallBegun> take_new_falls();
   /// Ends the live detection and completes the cycle under way; finish() does this too.
   void end_live();
-  /// Present phase and regime.
+  /// Present phase and regime; idle and undecided unless settings.live.
   [[nodiscard]] const detect::LiveState& live() const noexcept { return live_.state(); }
 
-  /// Returns the results of the whole test. Call once.
+  /// Returns the results of the whole test. Call once. With fewer scans than signal::kFewestScansForNoise
+  /// only spikes, gaps and lost scans are counted.
   [[nodiscard]] TestResults finish();
 
-  /// After finish(): one cycle for each slip.
+  /// After finish(): one cycle for each slip; empty if there is none.
   [[nodiscard]] const base::LongColumn<detect::Cycle>& cycles() const noexcept { return cycles_; }
   /// Moves the cycles out.
   [[nodiscard]] base::LongColumn<detect::Cycle> take_cycles() { return std::exchange(cycles_, {}); }
-  /// After finish(): the tester's parameters from this test alone; nullopt unless a fit describes the test.
+  /// After finish(): the tester's parameters from this test alone, without settings.prior; nullopt unless
+  /// such a fit describes the test.
   [[nodiscard]] const std::optional<TesterEstimate>& tester() const noexcept { return tester_; }
   /// After finish(): check against settings.prior.coupling; nullopt without it or without tester().
   [[nodiscard]] const std::optional<TesterCheck>& tester_check() const noexcept { return tester_check_; }
@@ -136,8 +141,7 @@ class TestAnalysis {
   [[nodiscard]] static Estimate transition_time(const estimate::Trace& trace, const TestEstimates& estimates,
                                                 const base::LongColumn<detect::Fall>& slips,
                                                 std::size_t slip);
-  /// Into cycles_, with their flags. \param tells_delta_mu  whether the S − K of a slip
-  /// holds.
+  /// Into cycles_, with their flags. \param tells_delta_mu  whether the S − K of a slip holds.
   void keep_cycles(const estimate::Trace& trace, const TestEstimates& estimates,
                    const base::LongColumn<detect::Fall>& slips,
                    const std::function<bool(const detect::Fall&)>& tells_delta_mu);

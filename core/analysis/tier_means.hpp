@@ -8,18 +8,21 @@
 
 namespace stickslip::analysis {
 
-/// Running means over cycles, in fixed memory. The first cycle, often not representative [Penner 1995], is
-/// left out if there are others, unless first_counts.
+/// Means of S, K and S − K over cycles, in fixed memory. The first cycle, often not representative [Penner
+/// 1995], is left out if there are others, unless first_counts.
 class TierMeans {
  public:
   explicit TierMeans(bool first_counts = false) noexcept : leaves_out_first_(!first_counts) {}
+  /// The next cycle; one without S or K is ignored.
   void add(const detect::LiveCycle& cycle) noexcept;
-  /// Peak and trough of the next slip, with an estimate of its own or without.
+  /// Peak and trough of the next slip, also of one without S and K. The standard errors of S and K are at
+  /// least those of the mean peak and the mean middle of peak and trough.
   void add_level(double peak, double trough) noexcept;
-  /// mu_s, mu_k, delta_mu and delta_mu_scatter. Standard errors follow from the scatter of the cycles, of
-  /// which neighbours are correlated. The systematic uncertainty is the whole correction for belt and
-  /// damping: no fit has shown that the closed forms hold. Of an S − K that is not above zero that
-  /// correction is the bound (tell_bound()).
+  /// Fills mu_s, mu_k, delta_mu and delta_mu_scatter; absent without a cycle, the scatter with fewer than
+  /// three. Standard errors follow from the scatter of the cycles, of which neighbours are correlated; one
+  /// cycle has none. The systematic uncertainty is the whole correction for belt and damping: no fit has
+  /// shown that the closed forms hold. An S − K that is not above zero is replaced by half of that
+  /// correction, as by tell_bound(), and Q and threshold_speed become absent.
   void fill(TestResults& results) const;
 
  private:

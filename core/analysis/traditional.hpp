@@ -13,26 +13,31 @@
 namespace stickslip::analysis {
 
 struct TraditionalCoefficients {
-  Estimate static_coefficient;   ///< Largest scan of the peak of slip method.static_slip.
-  Estimate kinetic_coefficient;  ///< Mean over the cycles, peak to peak, or the travel after the first peak.
+  /// Largest of the three scans about the peak of slip method.static_slip; absent with fewer slips.
+  Estimate static_coefficient;
+  /// Mean over the method's cycles, peak to peak, or over its travel after the first peak; absent if the
+  /// trace is shorter.
+  Estimate kinetic_coefficient;
 };
 
+/// Means leave out scans that are not usable, and those during which the belt stood still.
 /// \param trace  not empty.
 /// \param slips  in the order of time. Without slips there is no static coefficient, and the kinetic one is
 ///        the mean of the trace without loading and unloading; a travel window then counts from the end of
 ///        the loading.
-/// \param pull_speed_m_per_s  nominal, > 0; required by a travel window.
+/// \param pull_speed_m_per_s  nominal, > 0; without it a travel window has no value.
 [[nodiscard]] TraditionalCoefficients traditional_coefficients(const estimate::Trace& trace,
                                                                const base::LongColumn<detect::Fall>& slips,
                                                                const model::Method& method,
                                                                std::optional<double> pull_speed_m_per_s = {});
 
-/// Mean over all cycles of the trace, peak to peak, and over ten periods from the first peak on where the
-/// oscillation dies away before: whatever the method averages. No value of a single slip.
+/// Mean force from the first peak to the last, as a coefficient, whatever the method averages. With fewer
+/// than ten cycles, as where the oscillation dies away, over ten mean periods from the first peak on if the
+/// trace lasts so long. Absent with fewer than two slips.
 [[nodiscard]] Estimate mean_force(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips);
 
-/// Whether the trace begins while the sled slides: half of its first scans are above half of the largest. The
-/// first peak is then no static one.
+/// Whether the trace begins while the sled slides: more than half of its first five scans are at least half
+/// of the largest. The first peak is then no static one.
 [[nodiscard]] bool begins_under_load(const estimate::Trace& trace);
 
 }  // namespace stickslip::analysis

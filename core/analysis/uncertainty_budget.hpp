@@ -3,8 +3,7 @@
 /// and shares of the variance, the combined uncertainty u and the expanded one, U = 2 u.
 ///
 ///     const auto budget = test_budget(results, quantity, facts);
-///     if (budget && budget->combined) print(budget->value, *budget->expanded());   // 0.0463 ± 0.0091 (k =
-///     2)
+///     if (budget && budget->combined) print(budget->value, *budget->expanded());   // 0.0463 ± 0.0091
 #pragma once
 
 #include <array>
@@ -35,7 +34,7 @@ struct BudgetFacts {
 
 /// How a source enters a budget.
 enum class BudgetState {
-  kCounted,
+  kCounted,   ///< Its variance is a part of u².
   kIncluded,  ///< Another line counts it; the note says which.
   kNone,      ///< Does not affect this quantity; the note says why.
   kUnknown,   ///< The note says what to do. The combined uncertainty lacks it.
@@ -43,28 +42,29 @@ enum class BudgetState {
 
 [[nodiscard]] std::string_view name(BudgetState state) noexcept;
 
+/// One source of uncertainty in a budget. Numbers are in the unit of the quantity.
 struct BudgetLine {
   std::string_view source;  ///< In JSON: "noise", "calibration", …
   std::string_view title;   ///< In tables.
   char type = 'B';          ///< A: by statistics of observations, B: otherwise [JCGM 100:2008, 2.3.2, 2.3.3].
   BudgetState state = BudgetState::kCounted;
   std::optional<double> size{};  ///< Standard uncertainty; counted only if the state says so.
-  double variance = 0.0;         ///< What of u² is owed to this source.
-  std::string note{};            ///< Empty if counted.
+  double variance = 0.0;         ///< Contribution of this source to u².
+  std::string note{};            ///< Why the state, or what else to know; may be empty if counted.
 };
 
 struct UncertaintyBudget {
   double value = 0.0;
   std::vector<BudgetLine> lines;
-  std::optional<double> combined;  ///< u; nullopt: no source is known.
-  /// Probability with which U covers, where few replicates make it less than the normal distribution's
-  /// [JCGM 100:2008, G.4]; nullopt if it is not less by 1 %.
+  std::optional<double> combined;  ///< u; nullopt: no line is counted.
+  /// Probability that ± U covers the quantity, 0 … 1, where few replicates make it less than the normal
+  /// distribution's 0.9545 by more than 0.01 [JCGM 100:2008, G.4]; else nullopt.
   std::optional<double> coverage;
 
   [[nodiscard]] std::optional<double> expanded() const {
     return combined ? std::optional{kCoverageFactor * *combined} : std::nullopt;
   }
-  /// Part of u², 0 … 1.
+  /// Part of u² that is this line's, 0 … 1; 0 if u is 0 or not known.
   [[nodiscard]] double share_of(const BudgetLine& line) const {
     return combined && *combined > 0.0 && std::isfinite(*combined) ? line.variance / (*combined * *combined)
                                                                    : 0.0;
@@ -73,13 +73,14 @@ struct UncertaintyBudget {
   [[nodiscard]] std::string unknown() const;
 };
 
-/// Budget of a test; nullopt without a value. The random part is the standard error, or of the static
-/// coefficient, which is one scan, the noise of a scan. The systematic parts are those of the estimate.
+/// Budget of one result of a test; nullopt if that has no value. The random part is the standard error, or of
+/// the static coefficient, which is one scan, the noise of a scan. The systematic parts are those of the
+/// estimate. \param quantity  one of kBudgetQuantities.
 [[nodiscard]] std::optional<UncertaintyBudget> test_budget(const TestResults& results,
                                                            const Quantity& quantity,
                                                            const BudgetFacts& facts);
 
-/// Sets u from the variances of the lines that are counted.
+/// Sets u from the variances of the lines that are counted; nullopt if none is.
 void combine(UncertaintyBudget& budget);
 
 }  // namespace stickslip::analysis

@@ -2,8 +2,7 @@
 /// The named parts of a systematic uncertainty.
 ///
 ///     add_systematic(results.mu_s, UncertaintySource::kZero, offset);
-///     results.mu_s.systematic_parts[UncertaintySource::kZero];   // what all calls for the zero gave
-///     together
+///     results.mu_s.systematic_parts[UncertaintySource::kZero];   // of all calls for the zero together
 #pragma once
 
 #include <array>
@@ -25,7 +24,7 @@ enum class UncertaintySource : std::uint8_t {
   kDamping,      ///< Whether the damper's force counts at the onset; a damping that is held.
   kCreep,        ///< Creep of the contact before a slip that does not stick again.
   kMisfit,       ///< What differs from the fit alike in each slip.
-  kRung,  ///< Distance to the result of another rung, of the slips' own fits, or of K to the mean force.
+  kRung,  ///< Distance to the result of another rung or of the slips' own fits, or from K to the mean force.
   kCorrection,  ///< By turning points: the whole correction for belt and damping.
   kBound,       ///< S − K is not told from zero: half of its bound.
 };
@@ -35,7 +34,7 @@ inline constexpr std::size_t kUncertaintySourceCount = 9;
 struct UncertaintySourceName {
   std::string_view name;   ///< In records and JSON.
   std::string_view title;  ///< In tables.
-  /// Whether the part adds in quadrature to all before it. The others add as they are: their correlation is
+  /// Whether the part adds in quadrature to the total. The others add as they are: their correlation is
   /// not known, and fully correlated parts give the largest total [JCGM 100:2008, 5.2.2 note 1].
   bool is_independent;
 };
@@ -72,25 +71,29 @@ struct UncertaintyPart {
   double size;  ///< In the unit of the estimate; its sign does not matter.
 };
 
-/// Adds parts to a systematic uncertainty: the only way to do so. Does nothing to an estimate without a
-/// value. \param parts  of one place: what they make together is added at once.
+/// Adds parts to those of the estimate and to its total: independent ones in quadrature, then the sum of the
+/// others as it is. A part that is there already grows by the same rule. Add independent parts last: only
+/// then the total is total_of() the parts. Does nothing to an estimate without a value.
 void add_systematic(Estimate& estimate, std::initializer_list<UncertaintyPart> parts);
 void add_systematic(Estimate& estimate, UncertaintySource source, double size);
 
-/// Notes that this source is known to add nothing. The total stays as it is, also unknown.
+/// Sets this source's part to 0, known to add nothing, if the estimate has a value and no such part yet. The
+/// total, known or not, does not change.
 void note_no_systematic(Estimate& estimate, UncertaintySource source);
 
-/// The total that the parts make.
+/// Total of the parts: the sum of those that are not independent, and the others in quadrature; 0 if none.
 [[nodiscard]] double total_of(const SystematicParts& parts) noexcept;
 
-/// What each part contributes to the systematic uncertainty; all together are that uncertainty. A part a of
-/// those that add to M contributes a M/u, an independent part q of the total u contributes q²/u: the
-/// contribution times u is the part's share of the variance u².
+/// What each part contributes to the systematic uncertainty u; the contributions add to u. With M the sum of
+/// the parts that are not independent, such a part a contributes a M/u, and an independent part q contributes
+/// q²/u: the contribution times u is the part's share of the variance u².
 struct Contributions {
   std::array<double, kUncertaintySourceCount> of{};
-  double unnamed = 0.0;  ///< The whole, where the parts are not known: records of older versions.
+  /// u, where the parts do not make it, as in records of older versions: then `of` is 0.
+  double unnamed = 0.0;
 };
 
+/// All 0 if u is unknown, 0 or NaN.
 [[nodiscard]] Contributions contributions_of(const Estimate& estimate) noexcept;
 
 }  // namespace stickslip::analysis

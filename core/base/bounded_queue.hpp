@@ -15,21 +15,21 @@
 
 namespace stickslip::base {
 
-/// One producer thread, one consumer thread.
+/// Queue of at most `capacity` items, which must be > 0, from one producer thread to one consumer thread.
 template <typename T>
 class BoundedQueue {
  public:
   explicit BoundedQueue(std::size_t capacity)
       : queue_(capacity), free_slots_(static_cast<unsigned>(capacity)) {}
 
-  /// Producer only; waits for room.
+  /// Producer only. Appends an item, which the consumer sees at once. Blocks until the queue has room.
   void push(const T& item) {
     put(item);
     announce();
   }
 
-  /// Producer only. Blocks until the queue has room. The consumer sees the item only after announce(), so
-  /// that several items wake it once.
+  /// Producer only. Appends an item, which the consumer sees only after announce(), so that several items
+  /// wake it once. Blocks until the queue has room; before it blocks, it announces the earlier items.
   void put(const T& item) {
     if (!free_slots_.try_acquire()) {
       stalls_.fetch_add(1, std::memory_order_relaxed);
@@ -45,7 +45,8 @@ class BoundedQueue {
     for (; put_ > 0; --put_) items_.release();
   }
 
-  /// Consumer only. Takes the oldest item; waits for one at most `timeout`. \return false after the timeout.
+  /// Consumer only. Takes the oldest item; waits for one at most `timeout`. \return false after the timeout;
+  /// `item` is then unchanged.
   bool pop(T& item, std::chrono::milliseconds timeout) {
     if (!items_.try_acquire_for(timeout)) return false;
     queue_.pop(item);
@@ -53,7 +54,7 @@ class BoundedQueue {
     return true;
   }
 
-  /// Times the producer had to wait. Any thread.
+  /// Number of times the producer had to wait. Any thread.
   [[nodiscard]] std::uint64_t stall_count() const noexcept { return stalls_.load(std::memory_order_relaxed); }
 
  private:

@@ -16,6 +16,6 @@ namespace stickslip::base {
 
 }  // namespace stickslip::base
 
-/// Checked in every build: the cost is one predicted branch.
+/// Prints the place and aborts if the condition is false. Checked in every build; costs one predicted branch.
 #define STICKSLIP_EXPECTS(condition) \
   ((condition) ? static_cast<void>(0) : ::stickslip::base::contract_broken(#condition, __FILE__, __LINE__))

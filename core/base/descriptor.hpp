@@ -8,7 +8,8 @@
 
 namespace stickslip::base {
 
-/// Owns a file descriptor.
+/// Owns a file descriptor and closes it when destroyed; a negative one stands for none. Move assignment
+/// swaps, so the old descriptor is closed with the other object.
 class Descriptor {
  public:
   explicit Descriptor(int descriptor = -1) noexcept : descriptor_(descriptor) {}

@@ -1,5 +1,5 @@
 /// \file
-/// How many digits a number is shown with, and the unit in which a speed is.
+/// Number of digits with which a number is shown, and unit in which a speed is shown.
 #pragma once
 
 #include <string>
@@ -7,28 +7,29 @@
 
 namespace stickslip::base {
 
-/// Decimals that show `digits` significant digits of a positive number, once it is rounded to them; negative
-/// from 10^digits on. \param number  > 0, finite.
+/// Number of decimals with which a number rounded to `digits` significant digits is shown. For 2 digits: 3
+/// for 0.0123, 0 for 12.3, −1 for 99.6, which rounds to 100.
+/// \param number  > 0, finite. \param digits  ≥ 1.
 [[nodiscard]] int decimals_of(double number, int digits);
 
-/// Significant digits of an uncertainty [JCGM 100:2008, 7.2.6].
+/// Number of significant digits with which an uncertainty is shown [JCGM 100:2008, 7.2.6].
 inline constexpr int kUncertaintyDigits = 2;
 
 /// A unit of speed.
 struct SpeedUnit {
   std::string_view symbol;
-  double m_per_s = 1.0;  ///< One of it.
+  double m_per_s = 1.0;  ///< One of this unit, m/s.
 
-  /// "12 in/min": at most six significant digits.
+  /// The speed in this unit, with at most six significant digits: "12 in/min".
   [[nodiscard]] std::string text(double speed_m_per_s) const;
 };
 
-/// The unit in which a nominal speed has the fewest digits, as it was most likely typed: 0.00508 m/s is 12
-/// in/min, 0.0025 m/s 150 mm/min. Of in/min, mm/min, mm/s and m/s; what is equally short in two has the
-/// first.
+/// The unit in which a nominal speed was most likely typed: of in/min, mm/min, mm/s and m/s the one in which
+/// it has the fewest significant digits, among equals the fewest characters, then the first. 0.00508 m/s is
+/// 12 in/min, 0.0025 m/s is 150 mm/min.
 [[nodiscard]] SpeedUnit unit_of_speed(double speed_m_per_s);
 
-/// A nominal speed in unit_of_speed().
+/// A nominal speed with its unit_of_speed(): "12 in/min".
 [[nodiscard]] std::string speed_text(double speed_m_per_s);
 
 }  // namespace stickslip::base

@@ -1,5 +1,6 @@
 /// \file
-/// Findings: what the instrument knows against a test or the bench. One list of codes for all sources.
+/// Findings: what the instrument found wrong, or worth knowing, about a test or the bench, and what to do
+/// about it. One list of codes for all sources.
 ///
 ///     add(results.findings, make_finding(FindingCode::kPullSpeed, "the pull speed was …", {{"plan", 0.00508,
 ///     "m/s"}}));
@@ -15,7 +16,7 @@
 namespace stickslip::base {
 
 enum class Severity {
-  kNote,     ///< The numbers stand; something could not be checked.
+  kNote,     ///< The numbers are right; something could not be checked, or they describe less than it seems.
   kWarning,  ///< A number is off or less certain than it looks.
   kFault,    ///< Numbers are wrong until the cause is removed.
 };
@@ -25,7 +26,7 @@ inline constexpr Severity kSeverities[] = {Severity::kFault, Severity::kWarning,
 [[nodiscard]] std::string_view name(Severity severity) noexcept;
 [[nodiscard]] std::optional<Severity> severity_from_name(std::string_view text) noexcept;
 
-/// In the order of finding_kinds().
+/// Code of a finding. finding_kinds() gives the name, severity, meaning and action of each, in this order.
 enum class FindingCode : std::uint8_t {
   kNoSelfCheck,
   kSelfCheckSaturated,
@@ -76,7 +77,7 @@ inline constexpr std::size_t kFindingCodes = static_cast<std::size_t>(FindingCod
 struct FindingKind {
   FindingCode code;
   std::string_view name;    ///< Stable between versions: "zero-offset".
-  std::string_view source;  ///< What looks: "self-check", "clock", "zero" …
+  std::string_view source;  ///< Check that finds it: "self-check", "clock", "zero" …
   Severity severity;
   std::string_view meaning;  ///< When it is found; one sentence without a full stop.
   std::string_view action;   ///< What to do; an imperative without a full stop.
@@ -89,14 +90,15 @@ struct FindingKind {
 struct FindingNumber {
   std::string name;
   double value = 0.0;
-  std::string unit;  ///< SI, "1" for a ratio or a count.
+  std::string unit;  ///< SI unit of the value; "1" for a ratio or a count.
 
   bool operator==(const FindingNumber&) const = default;
 };
 
-/// A finding carries its code's severity and action with it: a record may be of a newer version.
+/// One finding. It carries its code's severity and action with it, since a record of a newer version may have
+/// codes that this version lacks.
 struct Finding {
-  std::string code;
+  std::string code;  ///< FindingKind::name.
   Severity severity = Severity::kWarning;
   std::string text;  ///< One sentence.
   std::string action;
@@ -105,14 +107,15 @@ struct Finding {
   bool operator==(const Finding&) const = default;
 };
 
-/// \param numbers  those that are not finite are left out.
+/// Finding with the name, severity and action of its code.
+/// \param text  one sentence. \param numbers  those that are not finite are left out.
 [[nodiscard]] Finding make_finding(FindingCode code, std::string text,
                                    std::vector<FindingNumber> numbers = {});
 
-/// Inserts a finding: the most severe first, else in the order of insertion.
+/// Inserts a finding into a list that has the most severe first; behind those of its own severity.
 void add(std::vector<Finding>& list, Finding finding);
 
-/// The sentences.
+/// The text of each finding, in the same order.
 [[nodiscard]] std::vector<std::string> texts_of(std::span<const Finding> findings);
 
 }  // namespace stickslip::base

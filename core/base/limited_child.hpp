@@ -26,8 +26,10 @@ namespace stickslip::base {
 
 /// Limits of one answer.
 struct WorkLimits {
+  /// Processor time of the child, not wall time: a child that waits is not ended. 0: no limit.
   std::chrono::milliseconds processor_time{0};
-  /// Bytes of address space above what the child has mapped before. No limit under a sanitizer.
+  /// Bytes of address space that the child may map in addition to what it has mapped when the question comes.
+  /// 0: nothing in addition. No limit under a sanitizer.
   std::uint64_t memory = 0;
 };
 
@@ -35,27 +37,29 @@ struct WorkLimits {
 /// 350 scans/s (3 MB) takes 0.2 s and 60 MB.
 [[nodiscard]] WorkLimits limits_for_file(std::uint64_t size);
 
-/// Work of the child: returns a short answer to a question and writes long data into the memory file. An
-/// exception ends the child.
+/// Work of the child: returns a short answer to a question and writes long data into the memory file, a
+/// descriptor of a file that is empty when the question comes. An exception ends the child.
 using ChildWork = std::function<std::string(std::string_view question, int memory_file)>;
 
-/// Executable that calls answer_questions(), with its arguments.
+/// Executable that calls answer_questions(), not searched in PATH, and its arguments after argv[0].
 struct ChildProgram {
   std::string path;
   std::vector<std::string> arguments;
 };
 
-/// Main loop of a ChildProgram: reads questions from standard input and answers them; standard output is the
-/// memory file. The process ends when its parent ends.
+/// Main loop of a ChildProgram. Standard input is a socket, from which it reads questions and to which it
+/// writes the answers; standard output is the memory file. The process ends when its parent ends.
 [[noreturn]] void answer_questions(const ChildWork& work);
 
-/// Child process that starts at the first question, answers any number of them and is replaced when it dies.
-/// It ends with this object, and with the thread that asked first. Thread-bound, movable.
+/// Child process that starts at the first question and answers any number of them; if it has died, the next
+/// question starts another. It ends with this object, and with the thread whose question started it.
+/// Thread-bound; move-constructible.
 class LimitedChild {
  public:
-  /// Starts the child by posix_spawn; allowed in a process with several threads.
+  /// The first question starts the child, by posix_spawn: this process may have several threads.
   explicit LimitedChild(ChildProgram program) : start_(std::move(program)) {}
-  /// Starts the child by fork; allowed only while this process has one thread.
+  /// The first question starts the child, by fork: this process must then have one thread only, as whenever a
+  /// child that died is replaced.
   explicit LimitedChild(ChildWork work) : start_(std::move(work)) {}
   ~LimitedChild() { end(); }
   LimitedChild(LimitedChild&& other) noexcept
@@ -66,24 +70,27 @@ class LimitedChild {
         asked_(std::exchange(other.asked_, std::nullopt)) {}
   LimitedChild& operator=(LimitedChild&&) = delete;
 
-  /// \param given_up  called ten times a second and at each signal; true gives up the question. Empty: never.
-  /// Errors, without the file's name: kUsage if the work exceeded a limit or killed the child; kInterrupted
-  /// if given up; kFailure if no child can be started.
+  /// Asks the child and waits for the answer of its ChildWork.
+  /// \param given_up  called ten times a second and at each signal during the wait; true gives up the
+  ///        question and ends the child. Empty: never.
+  /// Errors, whose messages do not name the question: kUsage with Error::worker_died if the child died, by a
+  /// limit, an exception or a signal; kInterrupted if given up; kFailure if the system refuses.
   [[nodiscard]] Result<std::string> ask(std::string_view question, const WorkLimits& limits,
                                         const std::function<bool()>& given_up = {});
 
   /// The two halves of ask(), to do other work between them. A second begin() without answer() discards the
-  /// answer and its child. Errors of begin(): kFailure if no child can be started.
+  /// answer and its child. answer() needs a begin() before it (contract). Errors of begin(): kFailure if no
+  /// child can be started; of answer(): those of ask().
   [[nodiscard]] Result<void> begin(std::string_view question, const WorkLimits& limits);
   [[nodiscard]] Result<std::string> answer(const std::function<bool()>& given_up = {});
 
-  /// Memory file written by the latest answer.
-  /// \return a path that this process can open until the next question.
+  /// Path of the memory file, as the latest answer left it. This process can open it until the next question,
+  /// which empties it.
   [[nodiscard]] std::string memory_file() const;
 
  private:
   [[nodiscard]] Result<void> start();
-  /// \return nothing where the child died before it.
+  /// Waits until the socket can be read: true, also where the child died.
   [[nodiscard]] Result<bool> wait_for_answer(const std::function<bool()>& given_up) const;
   [[nodiscard]] tl::unexpected<Error> why_it_died(const WorkLimits& limits);
   void end() noexcept;

@@ -5,9 +5,9 @@
 ///     force.push_back(0.3);
 ///     for (const double value : std::as_const(force)) …
 ///
-/// Without a folder it is a vector in blocks. With a folder, the latest few blocks stay in memory and the
-/// others are read from an unnamed file there, which is made when it is needed. Sequential or local access
-/// reads each block once.
+/// Without a folder it is a vector in blocks. With a folder, kResident blocks stay in memory, the last one
+/// and those read latest; the others are read from an unnamed file there, which is made when it is needed.
+/// Sequential or local access reads each block once.
 #pragma once
 
 #include <algorithm>
@@ -28,14 +28,17 @@
 
 namespace stickslip::base {
 
-/// Thread-bound, also where it is const; view() is for another thread. Where there is a folder, growing and
-/// reading may throw std::system_error, and elements can be read but not changed.
+/// Vector that may keep its elements in a file. Thread-bound, even if const; view() is for another thread.
+/// With a folder, growing and reading may throw std::system_error; the column can be moved but not copied,
+/// and its elements cannot be changed (contract). It must then be read as const, for example by
+/// std::as_const, since the non-const [] and iterators give references.
 template <typename T>
 class LongColumn {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:
-  /// Elements of a block: for numbers 3 min at 350 scans/s; for rows of a table, which are fewer, 32 kB.
+  /// Elements of a block: for numbers of at most 8 bytes 3 min at 350 scans/s; for rows of a table, which are
+  /// fewer, at most 32 kB.
   static constexpr std::size_t kBlock = sizeof(T) <= sizeof(double)
                                             ? std::size_t{1} << 16U
                                             : std::bit_floor((std::size_t{1} << 15U) / sizeof(T));
@@ -76,7 +79,7 @@ class LongColumn {
     blocks_.back()[size_ % kBlock] = value;
     ++size_;
   }
-  /// Keeps the first `size` elements. \param size  at most size().
+  /// Keeps the first `size` elements. \param size  at most size() (contract).
   void truncate(std::size_t size) {
     STICKSLIP_EXPECTS(size <= size_);
     const std::size_t blocks = (size + kBlock - 1) / kBlock;
@@ -103,7 +106,9 @@ class LongColumn {
     }
     return view;
   }
+  /// Removes all elements and the folder: what is added later stays in memory.
   void clear() { *this = LongColumn{}; }
+  /// Replaces all elements by `count` of this value; removes the folder.
   void assign(std::size_t count, T value) {
     clear();
     while (size_ < count) push_back(value);
@@ -179,7 +184,8 @@ class LongColumn {
   std::shared_ptr<ScratchFile> file_;
 };
 
-/// Iterator; reads by value, since the element may move to the file at the next access.
+/// Iterator; the column must stay where it is. A const_iterator reads by value, since the element may move to
+/// the file at the next access; an iterator gives a reference, without a folder only (contract).
 template <typename T>
 template <bool kConst>
 class LongColumn<T>::Iterator {

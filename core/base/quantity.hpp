@@ -43,20 +43,21 @@ enum class Dimension {
 };
 inline constexpr Dimension kLastDimension = Dimension::kTemperature;
 
-/// The whole text as one finite decimal number: no blanks, no plus sign, no hexadecimal, no
-/// inf or nan, no number outside the range of double.
+/// The whole text as one finite decimal number: no blanks, no plus sign, no hexadecimal, no inf or nan, no
+/// number outside the range of double. All else is an error of kind kUsage that names the text.
 [[nodiscard]] Result<double> parse_number(std::string_view text);
 
-/// "number unit" (blanks between them optional) in SI units. A dimensionless quantity may stand
-/// without a unit or in %, ppm. Micro is "u" or "µ", powers are "^2" or "²".
-/// \return the value, or an error that names the text and the allowed units, without a place: the caller
-/// prefixes file and key.
+/// "number unit" in SI units; blanks between and around them are optional. A dimensionless quantity may stand
+/// without a unit or in %, ppm. Micro is "u" or "µ", degree is "deg" or "°", a square is "^2" or "²", a cube
+/// only "^3".
+/// \return the value, or an error of kind kUsage that names the text and what is allowed, without a place:
+/// the caller prefixes file and key.
 [[nodiscard]] Result<double> parse_quantity(std::string_view text, Dimension dimension);
 
 /// What an entry (an option, a field of a request) does with a number that has no unit though its dimension
 /// has some. A dimensionless number needs none.
 enum class BareNumber {
-  kRefused,        ///< As in the configuration.
+  kRefused,        ///< Refused, as in configuration files.
   kOnlyZero,       ///< Refused but for 0, which is the same in all units.
   kSiWithWarning,  ///< Read in the SI unit, as version 0.1 did; EnteredQuantity::warning says so.
   kSi,             ///< Read in the SI unit, as the entry's help says.
@@ -67,20 +68,22 @@ struct EnteredQuantity {
   std::string warning;  ///< For the user; empty: none.
 };
 
-/// parse_quantity(), with the rule for numbers without a unit. Errors: as there.
+/// parse_quantity(), but `bare` rules what becomes of a number without a unit. Errors as parse_quantity().
 [[nodiscard]] Result<EnteredQuantity> enter_quantity(std::string_view text, Dimension dimension,
                                                      BareNumber bare);
 
 /// "a mass needs its unit, such as "500 g" or "500 kg"". \param number  as typed, without a unit.
 [[nodiscard]] std::string unit_needed(std::string_view number, Dimension dimension);
 
-/// The dimension whose SI unit that is; kDimensionless for "1" and for units of none.
+/// The dimension that has this SI unit, written as si_unit() gives it; kDimensionless for "1" and for any
+/// other text, such as "mm".
 [[nodiscard]] Dimension dimension_of_unit(std::string_view si_unit) noexcept;
 
 /// Unit in which parse_quantity() returns; "1" if dimensionless.
 [[nodiscard]] std::string_view si_unit(Dimension dimension) noexcept;
 
-/// "2.331 kg", "0.3": the shortest text that parses back to the same value.
+/// "2.331 kg", "0.3": the shortest text that parse_quantity() reads back as the same value.
+/// \param value  in SI units, finite.
 [[nodiscard]] std::string format_quantity(double value, Dimension dimension);
 
 }  // namespace stickslip::base

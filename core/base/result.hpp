@@ -21,7 +21,7 @@ enum class ErrorKind {
   kFailure,       ///< A valid request failed, for example at the disk or the board (exit status 1).
   kBusy,          ///< The resource is in use by another process (exit status 1).
   kNoPermission,  ///< A permission is missing (exit status 1).
-  /// The user stopped it; repeating the request resumes it (exit status 130, as after Ctrl-C).
+  /// The user stopped the request before its end (exit status 130, as after Ctrl-C).
   kInterrupted,
 };
 
@@ -29,7 +29,8 @@ enum class ErrorKind {
 struct Error {
   ErrorKind kind = ErrorKind::kFailure;
   std::string message;
-  bool worker_died = false;  ///< No answer: a child process was ended, by a limit or another hand.
+  /// A child process died before it answered: by a limit, an exception or a signal.
+  bool worker_died = false;
 
   /// Exit status for a command that ends with this error: 2 usage and input, 1 failure, 130 interrupted.
   [[nodiscard]] int exit_status() const noexcept {

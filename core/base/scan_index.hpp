@@ -6,8 +6,8 @@
 
 namespace stickslip::base {
 
-/// Number of a scan since the acquisition started; time = index / granted rate. It never repeats
-/// and never runs backwards; a jump is a gap.
+/// Number of a scan, counted through an acquisition. It never repeats and never runs backwards; a jump is a
+/// gap. The time between two scans is the difference of their indices over the granted rate.
 using ScanIndex = std::int64_t;
 
 }  // namespace stickslip::base

@@ -9,7 +9,8 @@
 
 namespace stickslip::base {
 
-/// All functions throw std::system_error that names the operation and the folder.
+/// An unnamed temporary file in a folder, the current one if the path is empty. Constructor, write() and
+/// read() throw std::system_error, which names the operation and the folder.
 class ScratchFile {
  public:
   explicit ScratchFile(const std::filesystem::path& folder);

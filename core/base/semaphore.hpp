@@ -13,7 +13,7 @@
 
 namespace stickslip::base {
 
-/// Thread-safe. The count may reach INT_MAX.
+/// Counting semaphore. Thread-safe. The count may reach INT_MAX.
 class Semaphore {
  public:
   explicit Semaphore(unsigned count = 0) noexcept { static_cast<void>(::sem_init(&semaphore_, 0, count)); }
@@ -24,10 +24,12 @@ class Semaphore {
   /// Increments the count. Never blocks; calls the kernel only if a thread is waiting.
   void release() noexcept { static_cast<void>(::sem_post(&semaphore_)); }
 
+  /// Decrements the count; waits while it is 0.
   void acquire() noexcept {
     while (::sem_wait(&semaphore_) != 0) {  // Signals interrupt it.
     }
   }
+  /// Decrements the count unless it is 0. \return false if it is 0.
   [[nodiscard]] bool try_acquire() noexcept { return ::sem_trywait(&semaphore_) == 0; }
   /// Decrements the count; waits at most `timeout`. \return false after the timeout.
   [[nodiscard]] bool try_acquire_for(std::chrono::milliseconds timeout) noexcept {

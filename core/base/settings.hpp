@@ -1,5 +1,5 @@
 /// \file
-/// Checked reading of TOML settings. Each key is read once, with its dimension, range and default; an error
+/// Checked reading of TOML settings. A getter reads one key, with its dimension, range and default; an error
 /// is one line with its place.
 ///
 ///     Result<Settings> settings = Settings::load("tester.toml");
@@ -9,9 +9,9 @@
 ///     const bool damped = tester.boolean("damped", true);           // optional, with default
 ///     if (Result<void> ok = settings->finish(); !ok) return tl::unexpected(ok.error());
 ///
-/// A getter that fails stores the reason and returns a substitute (the default, else zero), so that a reader
-/// can call all getters in sequence. Values are valid only if finish() succeeds. finish() refuses keys that
-/// were not read.
+/// A getter that fails stores the reason and returns a substitute, which need not be in range, so that a
+/// reader can call all getters in sequence. Values are valid only if finish() succeeds. finish() refuses keys
+/// that were not read.
 ///
 /// A document can be changed before it is read, for example by command-line options. Errors about a changed
 /// value then name the option instead of a line of the file:
@@ -35,7 +35,7 @@
 
 namespace stickslip::base {
 
-/// Allowed range of a number, in SI units.
+/// Allowed range of a number, in SI units; max belongs to it.
 struct Limits {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
@@ -62,42 +62,47 @@ class Settings {
   /// Longest file that is read, bytes.
   static constexpr std::size_t kLargestFile = 1 << 20;
 
-  /// Reads and parses a file. Usage error: unreadable, too long, invalid TOML (with file:line).
+  /// Reads and parses a file. Usage error: unreadable, too long, not UTF-8 or invalid TOML (with file:line).
   [[nodiscard]] static Result<Settings> load(const std::filesystem::path& file);
-  /// Parses text. \param name stands for the file in messages.
+  /// Parses text. \param name stands for the file in messages. Usage error: not UTF-8, invalid TOML.
   [[nodiscard]] static Result<Settings> parse(std::string_view text, std::string_view name);
 
-  /// Sets a key of the document, from any of its tables; creates missing tables on the path.
-  /// \param path    dotted from the root, no arrays.
+  /// Sets a key of the document; creates missing tables on the path. Call it before reading: a Settings that
+  /// table() or tables() returned before does not see an added table, and dangles if its table is replaced.
+  /// \param path    dotted from the document's root, whichever table this is; no arrays.
   /// \param value  TOML; text that is not TOML is taken as a string.
   /// \param origin  stands for the place in messages, e.g. the option as typed.
   /// Usage error: empty name in the path, a value on the path that is not a table, text that is not UTF-8.
   [[nodiscard]] Result<void> set(std::string_view path, std::string_view value, std::string_view origin);
-  /// Removes a key or table. Usage error if it is absent; the message lists the keys present.
+  /// Removes a key or table. Call it before reading: a Settings of a removed table dangles.
+  /// \param path,origin  as of set().
+  /// Usage error if it is absent; the message lists the keys present beside it.
   [[nodiscard]] Result<void> remove(std::string_view path, std::string_view origin);
 
-  /// Name given to load() or parse(), and the whole text: as read, or, after a change, the changed document
-  /// written anew below a line that lists the changes.
+  /// Path given to load(), or name given to parse().
   [[nodiscard]] const std::string& source_name() const noexcept;
+  /// Text of the whole document: as read, or, after set() or remove(), written anew below a line that lists
+  /// the changes.
   [[nodiscard]] const std::string& source_text() const noexcept;
 
-  /// Whether the key is present. Does not count as reading it.
+  /// Whether this table has the key. Does not count as reading it.
   [[nodiscard]] bool has(std::string_view key) const;
 
-  /// A sub-table; an empty one if absent, whose required keys are then missing.
+  /// A sub-table; an empty one if absent or no table, whose required keys are then missing.
   [[nodiscard]] Settings table(std::string_view key);
-  /// [[key]] tables in order; none if absent.
+  /// [[key]] tables in order; none if absent or no array of tables.
   [[nodiscard]] std::vector<Settings> tables(std::string_view key);
 
-  /// A number in SI units, written as a string with unit, or bare if dimensionless.
-  /// Without `fallback` the key is required.
+  /// A number in SI units, written as a string with unit, or bare if dimensionless. Must be finite.
+  /// \param fallback  value of an absent key, SI, not checked. All getters require the key without it.
   [[nodiscard]] double quantity(std::string_view key, Dimension dimension, Limits limits,
                                 std::optional<double> fallback = std::nullopt);
-  /// As quantity(), but the key may be absent.
+  /// As quantity(), but the key may be absent. Nullopt if it is absent or wrong.
   [[nodiscard]] std::optional<double> quantity_if_given(std::string_view key, Dimension dimension,
                                                         Limits limits);
 
   [[nodiscard]] bool boolean(std::string_view key, std::optional<bool> fallback = std::nullopt);
+  /// An integer from min to max, both allowed.
   [[nodiscard]] std::int64_t integer(std::string_view key, std::int64_t min, std::int64_t max,
                                      std::optional<std::int64_t> fallback = std::nullopt);
   [[nodiscard]] std::string text(std::string_view key,
@@ -107,6 +112,7 @@ class Settings {
       std::string_view key, const std::optional<std::vector<std::string>>& fallback = std::nullopt);
 
   /// Reads one of the names; returns its value.
+  /// \param names  at least one. \param fallback  one of their values; another value counts as none.
   template <typename T>
   [[nodiscard]] T choice(std::string_view key, std::span<const std::pair<std::string_view, T>> names,
                          std::optional<T> fallback = std::nullopt) {
@@ -123,12 +129,12 @@ class Settings {
   /// \param why  end of the message, such as "must not be below mu_k = 0.3".
   void refuse(std::string_view key, std::string_view why);
 
-  /// Result for the whole document: success, or the most important error: a wrong value, else an unknown key,
-  /// else a missing one.
+  /// Result for the whole document, after all keys were read: success, or the most important error, which is
+  /// the first wrong value, else an unknown key, else the first missing one.
   [[nodiscard]] Result<void> finish() const;
 
-  /// Dotted paths of all keys read so far in the whole document, sorted; "[]" follows the name of an array of
-  /// tables.
+  /// Dotted paths of the keys that were asked for so far in the whole document, present or not, without those
+  /// of tables; sorted. "[]" follows the name of an array of tables.
   [[nodiscard]] std::vector<std::string> known_keys() const;
 
  private:

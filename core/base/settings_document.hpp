@@ -25,7 +25,8 @@ inline constexpr std::size_t kLongestParserMessage = 200;
   return parent.empty() ? std::string{key} : fmt::format("{}.{}", parent, key);
 }
 
-/// Keys read from one table, which may be absent from the text.
+/// One table of the document, or the place of an absent one (`table` is null), with the keys that were asked
+/// for: finish() refuses all others.
 struct Settings::Node {
   const toml::table* table = nullptr;
   std::string path;        ///< Dotted, empty for the root.
@@ -35,6 +36,7 @@ struct Settings::Node {
   std::map<std::string, std::vector<Node*>, std::less<>> children;
 };
 
+/// The document that all its Settings share.
 struct Settings::Document {
   std::string name;
   std::string text;
@@ -46,7 +48,7 @@ struct Settings::Document {
   std::map<std::string, std::string, std::less<>> origins;
   std::vector<std::string> changes;  ///< Origins of all changes, in order.
 
-  /// Place of the value in the text, or the origin of the set() that wrote it.
+  /// "file:line" of the value, or the origin of the set() that wrote it or a table around it.
   [[nodiscard]] std::string place_of(std::string_view path, const toml::node& value) const;
   void wrong(std::string_view place, std::string_view what) {
     if (!first_wrong) first_wrong = error_at(place, what);
@@ -57,7 +59,8 @@ struct Settings::Document {
   void missing(std::string_view place, std::string_view what) {
     if (!first_missing) first_missing = error_at(place, what);
   }
-  /// Error at a place. It lists all changes, since a change elsewhere may have caused it.
+  /// Usage error at a place. Unless the place is itself a change, the message lists all changes, since one
+  /// elsewhere may have caused the error.
   [[nodiscard]] Error error_at(std::string_view place, std::string_view what) const;
   [[nodiscard]] std::optional<Error> first_unknown(const Node& node) const;
   /// Rewrites `text` after a change of the root. Usage error if the root cannot be written.

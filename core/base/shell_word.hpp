@@ -1,5 +1,5 @@
 /// \file
-/// Commands as text.
+/// Quoting of arguments for a shell.
 #pragma once
 
 #include <string>
@@ -7,7 +7,8 @@
 
 namespace stickslip::base {
 
-/// An argument as a shell would take it again.
+/// The argument as a POSIX shell reads it back as one word, in single quotes if it is empty or has a
+/// character that means something to a shell.
 [[nodiscard]] std::string shell_word(std::string_view argument);
 
 }  // namespace stickslip::base

@@ -6,7 +6,7 @@
 
 namespace stickslip::base {
 
-/// Sets the name of the calling thread. \param name  at most 15 characters.
+/// Sets the name of the calling thread. \param name  at most 15 bytes; a longer one has no effect.
 inline void name_this_thread(const char* name) noexcept {
   // A failure is harmless.
   static_cast<void>(::pthread_setname_np(::pthread_self(), name));

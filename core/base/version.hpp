@@ -4,7 +4,7 @@
 
 namespace stickslip::base {
 
-/// "0.1.0"
+/// Version, such as "0.1.0".
 extern const char* const kVersion;
 /// Commit it was built from, with "-dirty" if the tree had changes; "unknown" outside git.
 extern const char* const kCommit;

@@ -16,7 +16,7 @@
 
 namespace stickslip::daq {
 
-/// Real-time safe.
+/// Selects the clock anchors of an acquisition from its blocks, in their order. Real-time safe.
 class AnchorPicker {
  public:
   static constexpr double kWindow_s = 0.5;
@@ -26,7 +26,9 @@ class AnchorPicker {
       : period_ns_(1e9 / granted_Hz),
         window_scans_(std::max<std::int64_t>(1, std::llround(kWindow_s * granted_Hz))) {}
 
-  /// \return the anchor of the window that this block ends, if it ends one that has an anchor.
+  /// Takes the next block. One that was not read promptly can be no anchor; an empty one is ignored.
+  /// \return the anchor of the window before this block, if this block begins a new window and that one had a
+  /// prompt read.
   [[nodiscard]] std::optional<ClockAnchor> observe(const ScanBlock& block) noexcept {
     std::optional<ClockAnchor> picked;
     const ScanIndex last = block.end() - 1;
@@ -46,8 +48,8 @@ class AnchorPicker {
     return picked;
   }
 
-  /// Returns and removes the anchor of the present window, if any, and starts a new window. Also called after
-  /// a jump of the index.
+  /// Returns and removes the anchor of the present window, if any; the next block starts a new window. Call
+  /// it also where the index jumps by an estimate, since delays across the jump cannot be compared.
   [[nodiscard]] std::optional<ClockAnchor> flush() noexcept {
     window_open_ = false;
     std::optional<ClockAnchor> last;
@@ -55,10 +57,10 @@ class AnchorPicker {
     return last;
   }
 
-  /// Anchor of the present window so far.
+  /// Anchor of the present window so far, if any.
   [[nodiscard]] const std::optional<ClockAnchor>& best() const noexcept { return best_; }
 
-  /// How much later than `reference` this anchor was, by the granted rate, ns.
+  /// How much later this anchor was read than the granted rate predicts from `reference`, ns; < 0: earlier.
   [[nodiscard]] double lateness_ns(const ClockAnchor& anchor, const ClockAnchor& reference) const noexcept {
     return static_cast<double>(anchor.monotonic_ns - reference.monotonic_ns) -
            static_cast<double>(anchor.scan - reference.scan) * period_ns_;

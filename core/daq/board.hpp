@@ -28,7 +28,7 @@ enum class RawQuantity {
   kCoefficient,  ///< Imported, force over the sled's weight.
 };
 
-/// Properties of the board in use, read back from it: granted, not requested, values.
+/// Properties of the board in use: values that it granted, unless the name says requested.
 struct BoardInfo {
   std::string driver;      ///< "comedi", "simulated", "replay".
   std::string board_name;  ///< Name reported by the board.
@@ -53,7 +53,7 @@ struct BoardInfo {
   /// "command" (the board's own timer) or "polled" (one reading at a time, timed by this computer); empty:
   /// unknown.
   std::string acquisition;
-  std::string notes;                    ///< Requested settings that the board changed; for the log.
+  std::string notes;  ///< Requested settings that the board changed or does not have; for the log.
   std::optional<SecondChannel> second;  ///< Second channel, read in each scan; only if quantity is kCounts.
 };
 
@@ -68,7 +68,7 @@ enum class ReadStatus {
   kFailed,        ///< Any other error; last_error() says which. stop() and start() again.
 };
 
-/// One analog input acquiring scans at a fixed rate.
+/// One analog input, and a second one if info() has one, acquiring scans at a fixed rate.
 /// Thread-bound: the acquisition thread owns it between start() and stop().
 class Board {
  public:

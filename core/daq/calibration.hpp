@@ -1,6 +1,6 @@
 /// \file
-/// Conversion of a raw reading to volts, newtons and coefficient. All steps are linear except the board's
-/// polynomial.
+/// Conversion of a raw reading to volts, newtons and coefficient of friction. All steps are linear except the
+/// board's polynomial.
 ///
 ///     Calibration calibration{board.info(), load_cell, normal_load_N};
 ///     double c = calibration.coefficient(block.raw[0]);
@@ -18,11 +18,11 @@ struct LoadCell {
   double zero_V = 0.0;
 };
 
-/// The chain for one channel. Real-time safe after construction.
+/// Converts the raw readings of one board. Real-time safe after construction.
 class Calibration {
  public:
   /// \param normal_load_N  sled mass × g.
-  /// \throws std::invalid_argument unless gain is finite and not zero, zero finite, load positive.
+  /// \throws std::invalid_argument unless gain is finite and not zero, zero finite, load positive and finite.
   Calibration(const BoardInfo& board, LoadCell load_cell, double normal_load_N);
 
   /// Volts at the board's input; the reading itself if it is no count.
@@ -45,10 +45,10 @@ class Calibration {
   [[nodiscard]] const LoadCell& load_cell() const noexcept { return load_cell_; }
 
   [[nodiscard]] double normal_load_N() const noexcept { return normal_load_N_; }
-  /// One A/D step as a coefficient; 0 unless raw readings are counts.
+  /// One A/D step in the middle of the range as a coefficient, ≥ 0; 0 unless raw readings are counts.
   [[nodiscard]] double step_coefficient() const noexcept { return step_coefficient_; }
   /// Whether the reading is at a rail of the converter (code 0 or maxdata); the true value may then lie
-  /// outside.
+  /// outside. False unless raw readings are counts.
   [[nodiscard]] bool saturated(double raw) const noexcept {
     return quantity_ == RawQuantity::kCounts && (raw <= 0.0 || raw >= maxdata_);
   }

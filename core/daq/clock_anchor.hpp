@@ -8,7 +8,7 @@
 
 namespace stickslip::daq {
 
-/// Clock readings at a scan, from which the true scan rate is fitted.
+/// Readings of base::Clock when a scan was read, from which the true scan rate is fitted.
 struct ClockAnchor {
   base::ScanIndex scan = 0;
   std::int64_t monotonic_ns = 0;

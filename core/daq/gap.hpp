@@ -1,5 +1,7 @@
 /// \file
-/// Gaps: missing scans, found from jumps of the scan index, each with its cause.
+/// Gap: consecutive scans that are missing, with the cause. GapTracker finds gaps from jumps of the scan
+/// index. The journal adds those of scans that it could not store or cannot read, an import those of rows
+/// that its trace lacks.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +14,13 @@ namespace stickslip::daq {
 
 enum class GapCause {
   kUnknown,       ///< The index jumped without a report.
-  kOverrun,       ///< The board's buffer overflowed.
+  kOverrun,       ///< The board's buffer overflowed, and the board halted.
   kRingFull,      ///< The processing thread was too slow: the ring dropped whole blocks.
-  kBoardMissing,  ///< The board was unplugged.
+  kBoardMissing,  ///< The board was gone (unplugged or silent) and was opened again.
   kSuspended,     ///< The computer was suspended.
-  kMissingScans,  ///< The source reports them as missing (a replayed gap).
-  kStorageFull,   ///< They arrived; writing failed for longer than memory could hold them.
-  kDamaged,       ///< They were stored; that part of the journal is unreadable.
+  kMissingScans,  ///< An imported trace has no rows for these scans.
+  kStorageFull,   ///< The scans arrived; writing failed for longer than memory could hold them.
+  kDamaged,       ///< The scans were stored; that part of the journal is unreadable.
 };
 
 [[nodiscard]] constexpr std::string_view name(GapCause cause) noexcept {
@@ -55,12 +57,14 @@ struct Gap {
 class GapTracker {
  public:
   GapTracker() = default;
-  /// \param next  end of an earlier acquisition; the first block may then follow a gap.
+  /// \param next  index expected of the first block, the end of an earlier acquisition; nullopt: any.
   explicit GapTracker(std::optional<ScanIndex> next) noexcept : next_(next) {}
 
-  /// \param cause cause to assign if the index jumps before this block.
+  /// Takes the next block.
+  /// \param cause  cause of the gap if the index jumps before this block. With kOverrun, kBoardMissing and
+  ///        kSuspended the gap is estimated.
   /// \param halted  the board had halted in between; the gap is then estimated, whatever the cause.
-  /// \return the gap before the block, if any. The first block ever never has one.
+  /// \return the gap before the block, if any; none before the first block, unless its index was expected.
   [[nodiscard]] std::optional<Gap> observe(const ScanBlock& block, GapCause cause = GapCause::kUnknown,
                                            bool halted = false) noexcept {
     std::optional<Gap> gap;

@@ -42,7 +42,7 @@ inline constexpr std::string_view kStall = "stall: ";
 inline constexpr std::string_view kStep = "clock step: ";
 }  // namespace note_words
 
-/// Text of the record's event.
+/// Text of the event by which a record stores the note.
 [[nodiscard]] inline std::string to_text(const Note& note) {
   switch (note.kind) {
     case Note::Kind::kStart:
@@ -61,7 +61,7 @@ inline constexpr std::string_view kStep = "clock step: ";
   return fmt::format("{}{}", note_words::kMark, note.text);
 }
 
-/// Inverse of to_text(); nullopt for any other event.
+/// Inverse of to_text(): the note of an event of a record, at this scan; nullopt for any other event.
 [[nodiscard]] inline std::optional<Note> parse_note(base::ScanIndex scan, std::string_view event) {
   const auto as = [&](Note::Kind kind, std::string_view words) {
     return Note{kind, scan, std::string{event.substr(words.size())}};

@@ -29,12 +29,12 @@ namespace stickslip::daq {
 struct RateEstimate {
   double rate_Hz = 0.0;
   double standard_error_Hz = 0.0;  ///< From the scatter of the anchors about the line.
-  std::int64_t anchor_count = 0;   ///< Anchors used.
+  std::int64_t anchor_count = 0;   ///< Anchors used: those in segments of two or more.
 
   bool operator==(const RateEstimate&) const = default;
 };
 
-/// Real-time safe. Copyable; a copy is a snapshot.
+/// Running fit of the scan rate. Real-time safe. Copyable; a copy is a snapshot.
 class RateFit {
  public:
   /// Fewest anchors that give an estimate; with fewer the standard error has too few degrees of freedom.
@@ -62,7 +62,7 @@ class RateFit {
   /// Begins a segment: the distance of the next anchor's index from earlier ones is unknown.
   void begin_segment() noexcept;
 
-  /// Nullopt while there are fewer than kFewestAnchors.
+  /// Nullopt while fewer than kFewestAnchors are in segments of two or more.
   [[nodiscard]] std::optional<RateEstimate> estimate() const noexcept;
 
  private:
@@ -81,8 +81,9 @@ class RateFit {
   double late_late_ = 0.0;
 };
 
-/// Fits the anchors of a test; the expected rate is the median of the rates between neighbours.
-/// \param gaps  of the test; an estimated gap begins a segment.
+/// Fits the anchors of a test; nullopt as RateFit::estimate(). The expected rate is the median of the rates
+/// between neighbours, or granted_Hz if the median is off by a factor of ten or more.
+/// \param anchors,gaps  in the order of their scans; an estimated gap begins a segment.
 [[nodiscard]] std::optional<RateEstimate> fit_rate(std::span<const ClockAnchor> anchors,
                                                    std::span<const Gap> gaps, double granted_Hz);
 

@@ -17,21 +17,21 @@ namespace stickslip::daq {
 /// State from which scans are numbered after a halt, also with another board object.
 struct Continuation {
   ScanIndex end = 0;        ///< One past the last scan delivered.
-  ClockAnchor anchor;       ///< Scan with known time.
-  double scan_rate_Hz = 0;  ///< Measured if precise enough, else granted.
+  ClockAnchor anchor;       ///< A scan whose time is known.
+  double scan_rate_Hz = 0;  ///< Measured if known to 100 ppm, else granted.
 };
 
-/// Index of the first scan of a board started at `now_ns`, one period later. The clock gives the number of
-/// scans since `from`; at least one counts as lost.
+/// Index of the first scan of a board that was started at `now_ns` (Clock::monotonic_ns()) and takes this
+/// scan one period later. The time since from.anchor gives the number of scans; at least one counts as lost.
 [[nodiscard]] ScanIndex first_scan_after(const Continuation& from, std::int64_t now_ns) noexcept;
 
-/// Real-time safe.
+/// Measures the scan rate, and the delay of each read, during an acquisition. Real-time safe.
 class RateMeter {
  public:
   explicit RateMeter(double granted_Hz) noexcept
       : granted_Hz_(granted_Hz), picker_(granted_Hz), fit_(granted_Hz) {}
 
-  /// Blocks in the order of their indices.
+  /// To be called with each block, in the order of their indices.
   void observe(const ScanBlock& block) noexcept;
   /// To be called when a board was started whose first scan, one period after `now_ns`, has index `first`.
   /// The distance to earlier scans comes from the clock only.
@@ -39,11 +39,14 @@ class RateMeter {
   /// To be called when the index of the next block was derived from a clock.
   void restarted() noexcept;
 
-  /// Rate over all blocks so far; nullopt with too few anchors.
+  /// Rate over all blocks up to the last anchor; nullopt with fewer than RateFit::kFewestAnchors anchors.
   [[nodiscard]] std::optional<RateEstimate> estimate() const noexcept { return fit_.estimate(); }
-  /// Nullopt before the first block.
+  /// State after the last block. Nullopt after construction and after restarted(), until a block was read
+  /// promptly or started() was called.
   [[nodiscard]] std::optional<Continuation> continuation() const noexcept;
-  /// Delay of this block relative to the most prompt of the recent ones, ns; nullopt at the beginning.
+  /// Delay of this block's read relative to the latest anchor, the most prompt read of an earlier half
+  /// second, ns; negative: earlier. Nullopt for an empty block and before the first anchor after construction
+  /// or restarted(); started() sets one.
   [[nodiscard]] std::optional<double> lateness_ns(const ScanBlock& block) const noexcept;
 
  private:

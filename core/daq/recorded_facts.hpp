@@ -1,6 +1,6 @@
 /// \file
-/// Data of a record that a replay of its scans cannot reproduce: clock anchors, causes of gaps, commands and
-/// remarks.
+/// Data of a record that a replay of its scans cannot reproduce: clock anchors, causes of gaps, self-check,
+/// delays of the reads, notes, and the level of the unloaded cell.
 #pragma once
 
 #include <memory>
@@ -16,8 +16,8 @@
 namespace stickslip::daq {
 
 struct RecordedFacts {
-  std::vector<ClockAnchor> anchors;             ///< Rising.
-  std::vector<Gap> gaps;                        ///< Rising.
+  std::vector<ClockAnchor> anchors;             ///< In the order of their scans.
+  std::vector<Gap> gaps;                        ///< In the order of their scans.
   std::shared_ptr<const SelfCheck> self_check;  ///< Null if absent.
   std::optional<LatencyHistogram> read_latency;
   std::vector<Note> notes{};  ///< In the order of their scans.

@@ -35,15 +35,16 @@ struct ScanBlock {
   std::uint64_t overrun_count = 0;       ///< Halts of the board.
   std::uint64_t suspend_count = 0;       ///< Suspends of the computer.
   std::uint64_t dropped_scan_count = 0;  ///< Scans dropped by a full ring.
-  /// Raw readings: A/D counts (a double holds every count of up to 53 bits exactly), or the
-  /// values of an imported trace in the unit that BoardInfo names.
+  /// Raw readings: A/D counts (a double holds every count of up to 53 bits exactly), or the values of an
+  /// imported trace; BoardInfo::quantity tells which, and their unit.
   std::array<double, kMaxScans> raw{};
-  bool has_second = false;                       ///< As BoardInfo::second; the same in all blocks of a board.
-  std::array<std::int32_t, kMaxScans> second{};  ///< Its codes; SecondChannel::kNoCode for a missing one.
+  bool has_second = false;  ///< Whether the board has a second channel; the same in all its blocks.
+  /// Codes of the second channel; SecondChannel::kNoCode for a missing one.
+  std::array<std::int32_t, kMaxScans> second{};
 
   [[nodiscard]] ScanIndex end() const noexcept { return first + static_cast<ScanIndex>(count); }
   [[nodiscard]] std::span<const double> scans() const noexcept { return {raw.data(), count}; }
-  /// As many as scans(), or none.
+  /// As many codes as scans(); none without a second channel.
   [[nodiscard]] std::span<const std::int32_t> second_codes() const noexcept {
     return {second.data(), has_second ? count : 0};
   }

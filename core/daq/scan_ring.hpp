@@ -12,8 +12,8 @@
 
 namespace stickslip::daq {
 
-/// Lock-free, single producer, single consumer. When it is full the new block is dropped and
-/// counted: the producer never waits and never pops; the consumer sees the jump in the index.
+/// Lock-free queue of blocks for a single producer and a single consumer. When it is full the new block is
+/// dropped and its scans are counted: the producer never waits; the consumer sees the jump in the index.
 class ScanRing {
  public:
   /// \param capacity blocks; choose it for at least 60 s (see capacity_for()).
@@ -27,8 +27,8 @@ class ScanRing {
     return static_cast<std::size_t>(bridge_s * (kReadsPerSecond + full_blocks_per_second)) + 1;
   }
 
-  /// Writes every page once, so that the producer's first round through the ring takes no page faults.
-  /// Call before producer and consumer start.
+  /// Writes every page once, so that the producer's first round through the ring takes no page faults;
+  /// empties the ring. Call before producer and consumer start.
   void touch() {
     const ScanBlock block;
     while (queue_.push(block)) {
@@ -64,7 +64,7 @@ class ScanRing {
   /// Any thread.
   [[nodiscard]] Use use() const noexcept { return {capacity_, high_water_.load(std::memory_order_relaxed)}; }
 
-  /// Any thread.
+  /// Number of scans in all dropped blocks. Any thread.
   [[nodiscard]] std::uint64_t dropped_scan_count() const noexcept {
     return dropped_scans_.load(std::memory_order_relaxed);
   }

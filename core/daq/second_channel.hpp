@@ -15,8 +15,8 @@
 namespace stickslip::daq {
 
 enum class SecondQuantity {
-  kPullSpeed,     ///< Of the carriage that pulls, m/s; negative as it returns.
-  kSledPosition,  ///< Of the sled, m; it rests where the sled sticks to the paper.
+  kPullSpeed,     ///< Speed of the carriage that pulls, m/s; negative as it returns.
+  kSledPosition,  ///< Position of the sled, m; constant while the sled sticks.
 };
 
 [[nodiscard]] constexpr std::string_view name(SecondQuantity quantity) noexcept {
@@ -31,7 +31,7 @@ enum class SecondQuantity {
   return std::nullopt;
 }
 
-/// Settings granted by the board, and the sensor: quantity = (voltage − zero) · gain.
+/// The second channel: settings granted by the board, and the sensor: quantity = (voltage − zero) · gain.
 struct SecondChannel {
   SecondQuantity quantity = SecondQuantity::kPullSpeed;
   int channel = 1;
@@ -41,9 +41,9 @@ struct SecondChannel {
   /// code → volts, ascending powers of (code − expansion_origin).
   std::vector<double> polynomial{0.0, 1.0};
   double expansion_origin = 0.0;
-  std::string calibration;  ///< As BoardInfo's.
+  std::string calibration;  ///< As BoardInfo::calibration.
   double gain_per_V = 1.0;  ///< m/s or m for each volt; finite and not 0.
-  double zero_V = 0.0;      ///< Output at rest, or at the origin.
+  double zero_V = 0.0;      ///< Voltage at speed 0 or position 0.
 
   /// Marks a missing code.
   static constexpr std::int32_t kNoCode = -1;
@@ -56,7 +56,7 @@ struct SecondChannel {
     for (std::size_t power = polynomial.size(); power > 0; --power) volts = volts * x + polynomial[power - 1];
     return (volts - zero_V) * gain_per_V;
   }
-  /// One A/D step, m/s or m.
+  /// One A/D step in the middle of the range, m/s or m, ≥ 0.
   [[nodiscard]] double step() const noexcept {
     const auto middle = static_cast<std::int32_t>(maxdata / 2);
     return std::abs(value(middle + 1) - value(middle));

@@ -12,11 +12,11 @@
 namespace stickslip::daq {
 
 /// Results over consecutive unloaded scans, right before the first scan of the record. Forces are calibrated.
-/// A result is absent if there are too few scans for it.
+/// A result is absent if it is not known, for example with too few scans.
 struct SelfCheck {
   base::ScanIndex first_scan = 0;
-  std::vector<double> raw;  ///< Raw readings of these scans; the members below follow from them.
-  std::optional<double> zero_N;
+  std::vector<double> raw;       ///< Raw readings of these scans; the members below follow from them.
+  std::optional<double> zero_N;  ///< Mean force.
   std::optional<double> zero_standard_error_N;
   std::optional<double> drift_N_per_s;
   std::optional<double> drift_standard_error_N_per_s;

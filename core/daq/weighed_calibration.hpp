@@ -17,14 +17,15 @@ namespace stickslip::daq {
 
 /// Reading under one weight.
 struct WeightReading {
-  double mass_kg = 0.0;  ///< 0: no weight (the tare).
-  double voltage_V = 0.0;
-  std::optional<double> standard_error_V;  ///< Of the mean.
-  std::optional<double> wander_V;          ///< Change of the voltage during the reading.
+  double mass_kg = 0.0;                    ///< 0: no weight (the tare).
+  double voltage_V = 0.0;                  ///< Mean.
+  std::optional<double> standard_error_V;  ///< Of voltage_V.
+  std::optional<double> wander_V;          ///< Change of the voltage during the reading, ≥ 0.
   bool saturated = false;
 };
 
-/// Reading from scans. The means of its kReadingParts parts show a swinging or creeping weight.
+/// Reading from scans. They are divided into kReadingParts parts; the scatter of the parts' means gives the
+/// standard error, and their range the wander, which shows a swinging or creeping weight.
 /// \param voltages_V  consecutive scans; at least kReadingParts of them (contract).
 /// \param saturated   any of them at a rail of the converter.
 [[nodiscard]] WeightReading reading_of(double mass_kg, std::span<const double> voltages_V, bool saturated);
@@ -34,28 +35,33 @@ inline constexpr std::size_t kReadingParts = 10;
 struct WeighedPoint {
   WeightReading reading;
   double force_N = 0.0;
-  double residual_V = 0.0;  ///< Deviation from the line; NaN without a line.
+  double residual_V = 0.0;  ///< Voltage less that of the line; NaN if there is no load cell.
   std::string refused;      ///< Reason why it is refused; empty if accepted.
 };
 
+/// Result of weigh().
 struct WeighedCalibration {
-  LoadCellFit fit;  ///< Fit of the accepted readings; its reason also names a breach of the procedure.
-  std::vector<WeighedPoint> points;     ///< In the order of the readings.
-  std::vector<base::Finding> findings;  ///< About a valid calibration.
+  LoadCellFit fit;  ///< Fit of the accepted readings; without load cell if weigh() finds a fault.
+  std::vector<WeighedPoint> points;  ///< In the order of the readings.
+  /// Deviation from the line and hysteresis above 0.2 % of the largest difference from the tare; none without
+  /// a load cell.
+  std::vector<base::Finding> findings;
 };
 
-/// Largest change during a reading, relative to its difference from the tare: a tenth of 5 % of S − K =
-/// 0.025.
+/// Largest accepted wander of a reading, relative to its difference from the tare; of a reading without
+/// weight, relative to the largest difference from the tare.
 inline constexpr double kLargestWander = 0.005;
-/// Smallest difference from the tare, relative to the converter's span; below it, 1 % of a reading would be
-/// less than one code in 10 000.
+/// Smallest accepted difference of a weight from the tare, relative to the converter's span; below it, 1 % of
+/// the difference would be less than 1/10 000 of the span.
 inline constexpr double kSmallestChange = 0.01;
 /// Fewest different weights under rising load, and fewest readings under falling load.
 inline constexpr int kFewestWeights = 3;
 
-/// The first reading is the tare; weights then grow, and fall again. Masses at least 0 and finite (contract).
-/// \param span_V  of the converter's range; 0 if unknown, then the largest difference from the tare replaces
-///        it.
+/// Judges each reading and fits the accepted ones. The first reading must be the tare; weights then grow, and
+/// fall again. The result has no load cell but a reason, fit.reason, if the first reading has a mass or is
+/// refused, if fewer than kFewestWeights count on the way up or down, or if fit_load_cell() finds none.
+/// \param readings  masses at least 0 and finite (contract).
+/// \param span_V  of the converter's range; 0 if unknown: the largest difference from the tare replaces it.
 [[nodiscard]] WeighedCalibration weigh(std::span<const WeightReading> readings, double gravity_m_per_s2,
                                        double span_V);
 

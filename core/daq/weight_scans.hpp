@@ -11,7 +11,7 @@
 
 namespace stickslip::daq {
 
-/// Settling time and reading time of a weight.
+/// Times for one weight: first scans are skipped for settle_s, then recorded for reading_s.
 struct WeighingTimes {
   double settle_s = 1.0;
   double reading_s = 2.0;
@@ -22,15 +22,20 @@ struct WeighingTimes {
 /// Largest accepted mass of a weight, kg.
 inline constexpr double kHeaviestWeight_kg = 1e4;
 
+/// Scans of one weight, for one reading.
 class WeightScans {
  public:
-  /// \param times  not negative. At least daq::kReadingParts scans are read.
+  /// \param times  not negative (contract). At least daq::kReadingParts scans are recorded, however short
+  /// reading_s is.
   WeightScans(const daq::BoardInfo& board, const WeighingTimes& times);
 
-  /// Adds the next scan. Not needed once full().
+  /// Adds the next scan; it is skipped during the settling time. Once full(), further scans are not needed,
+  /// but count in the reading.
   void add(double raw);
   [[nodiscard]] bool full() const noexcept { return voltages_V_.size() >= wanted_; }
+  /// Number of scans recorded, without those skipped.
   [[nodiscard]] std::size_t count() const noexcept { return voltages_V_.size(); }
+  /// Number of recorded scans from which full() is true.
   [[nodiscard]] std::size_t wanted() const noexcept { return wanted_; }
   /// Reading of the collected scans. Only when full() (contract).
   [[nodiscard]] daq::WeightReading reading(double mass_kg) const;

@@ -17,10 +17,10 @@ inline constexpr double kStickRateChange = 0.05;
 /// spikes; two in a row that agree show a new belt speed.
 class BeltChange {
  public:
-  /// Registers a slip that the known stick rate does not describe.
-  /// \param slip  its number.
-  /// \param rate  slope of the rise before it, > 0.
-  /// \return whether the slip before was registered too, with an equal rate.
+  /// Registers a slip that the known stick rate does not describe; of several calls for one slip, the first.
+  /// \param slip  its number, one more than that of the slip before.
+  /// \param rate  slope of the rise before it, 1/s, > 0.
+  /// \return whether the slip before was registered too, with a rate that agrees (kStickRateChange).
   [[nodiscard]] bool seen(std::int64_t slip, double rate) noexcept {
     if (slip != latest_.slip) {
       before_ = latest_;
@@ -29,8 +29,10 @@ class BeltChange {
     return before_.slip + 1 == slip && std::abs(std::log(rate / before_.rate)) < kStickRateChange;
   }
 
-  /// Whether another stick rate explains a misfit: it removes the misfit, or half of it. A missed spike
-  /// leaves most of the misfit at any rate.
+  /// Whether another stick rate explains a misfit: it brings the residuals below kMisfitSigmas, or below half
+  /// of what they were. A missed spike leaves most of the misfit at any rate.
+  /// \param residual_sigmas  standard deviation of the residuals with the other rate, in σ.
+  /// \param before_sigmas    with the known rate, in σ.
   [[nodiscard]] static bool explains(double residual_sigmas, double before_sigmas) noexcept {
     return residual_sigmas < std::min(before_sigmas, std::max(kMisfitSigmas, 0.5 * before_sigmas));
   }

@@ -4,7 +4,7 @@
 ///
 /// Free: one decaying oscillation about one K (three parameters). Captured: the same until c′ = r (at the end
 /// of the rise of c′ if it does not reach r, with the penalty of kStickRateSpread), stick at rate r to a new
-/// S ≥ K, then a second slip with the same K (four parameters). After a stick the next amplitude is at least
+/// S, then a second slip with the same K (four parameters). After a stick the next amplitude is at least
 /// r/ω, and a free oscillation of smaller amplitude cannot reach c′ = r; this decides close to the threshold.
 /// [Penner 1995, (20)–(22)] A capture followed at once by a slip with S hardly above K cannot be told from a
 /// free oscillation; therefore S − K of the next slip has a prior, log-normal about the typical value.
@@ -22,9 +22,9 @@ namespace stickslip::detect {
 /// Standard deviation of the residuals, in σ, beyond which neither trajectory describes the scans.
 inline constexpr double kMisfitSigmas = 2.0;
 
-/// Likelihood density of an outlier, relative to the peak density of noise: one scan in twenty is a missed
-/// spike, uniform within the ±6 σ that the despiker lets pass. It limits the log-likelihood ratio of a scan
-/// to ln 101 = 4.6, so that two outliers hardly decide; three rarely occur together.
+/// Likelihood density of an outlier, relative to the peak density of noise: one row (ScanRow) in twenty is a
+/// missed spike, uniform within ±6 σ. It limits the log-likelihood ratio of a row to ln 101 = 4.6, so that
+/// two outliers hardly decide; three rarely occur together.
 inline constexpr double kStrayDensity = 0.01;
 
 /// ln 10⁴, the log-likelihood ratio that decides: then one wrong end in ten thousand slips at most [Wald,
@@ -34,7 +34,7 @@ inline constexpr double kDecisive = 9.210340371976184;
 /// Effort of one evaluation.
 struct Budget {
   /// Smallest |log-likelihood ratio| of interest. A ratio that is certainly smaller is not computed, which
-  /// saves most of the time; then only `known` is set. 0: always compute.
+  /// saves most of the time; then only CaptureEvidence::known is set. 0: always compute.
   double decisive = 0.0;
   /// Limit of the iterations of the captured trajectory's fit.
   int iterations = 8;
@@ -46,27 +46,33 @@ struct Budget {
 /// What is known of a slip before the test.
 struct CapturePrior {
   model::SharedParameters shared;  ///< ω, γ and r, held fixed.
-  double sigma = 0.0;              ///< Noise of one scan.
+  double sigma = 0.0;              ///< Noise of one scan, > 0.
   double typical_delta_mu = 0.0;   ///< Typical S − K of the test's slips, > 0.
-  /// First guess of S − K of the next slip; the typical one unless the next peak has been seen.
+  /// First guess of S − K of the next slip, if its peak has been seen; else the typical one is guessed.
   std::optional<double> next_delta_mu{};
-  const model::BeltMotion* belt = &model::constant_belt();  ///< Must outlive the test.
+  const model::BeltMotion* belt = &model::constant_belt();  ///< Must outlive the CaptureTest.
 };
 
+/// Result of CaptureTest::evaluate(). A ratio that was not computed leaves all members but `known` at their
+/// initial values. Times are on the time axis of the points.
 struct CaptureEvidence {
-  /// Captured over free; about 0 while the scans do not decide.
+  /// Captured over free: > 0 for captured; about 0 while the scans do not decide.
   double log_likelihood_ratio = 0.0;
-  double capture_s = std::numeric_limits<double>::quiet_NaN();     ///< If captured.
-  double next_onset_s = std::numeric_limits<double>::quiet_NaN();  ///< If captured; may be yet to come.
-  double residual_sigmas = 0.0;  ///< Standard deviation of the better trajectory's residuals, in σ.
-  bool known = false;            ///< There were enough scans for an evaluation.
+  /// Time of the capture in the captured trajectory, also where the free one is likelier.
+  double capture_s = std::numeric_limits<double>::quiet_NaN();
+  /// Onset of the next slip in the captured trajectory; may be yet to come.
+  double next_onset_s = std::numeric_limits<double>::quiet_NaN();
+  double residual_sigmas = 0.0;  ///< Robust standard deviation of the better trajectory's residuals, in σ.
+  bool known = false;            ///< There were enough points for an evaluation: eight rows (ScanRow).
 };
 
-/// Evaluator with memory for the points of one slip.
+/// Compares the captured and the free trajectory of a slip. Keeps rows and fits of the last evaluation, so
+/// that evaluations of one slip, as its points come, cost less.
 class CaptureTest {
  public:
-  /// \param points  of a slip from its force maximum on. A free oscillation can be told only if they
-  ///        reach the minimum after the next maximum.
+  /// \param points  of a slip, from its force maximum on or from between onset and maximum; at most
+  ///        CycleBuffer::kMostPoints. Close above the threshold speed a free oscillation is often told only
+  ///        when they reach the minimum after the next maximum.
   [[nodiscard]] CaptureEvidence evaluate(std::span<const estimate::CyclePoint> points,
                                          const CapturePrior& prior, const Budget& budget) noexcept;
 

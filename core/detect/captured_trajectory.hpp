@@ -31,14 +31,15 @@ struct BeltBelow {
   friend bool operator==(const BeltBelow&, const BeltBelow&) = default;
 };
 
-/// Captured trajectory with fixed ω, γ and r. [Penner 1995, (11)–(14), (20)]
+/// Captured trajectory with fixed ω, γ and r. [Penner 1995, (11)–(14), (20)] Times named tau are seconds
+/// after the slip's first point.
 class CapturedTrajectory {
  public:
-  /// K, c(0) − K, c′(0), and S of the next slip.
+  /// K, c(0) − K, c′(0) in 1/s, and S of the next slip, with time 0 at the slip's first point.
   using Parameters = Eigen::Vector4d;
 
   CapturedTrajectory() = default;
-  /// \param expected_capture_s  capture time of a slightly different trajectory.
+  /// \param expected_capture_s  capture_s() of a slightly different trajectory: saves most of the search.
   CapturedTrajectory(const Parameters& parameters, const model::SharedParameters& shared,
                      const BeltBelow& belt, std::optional<double> expected_capture_s = {}) noexcept;
 
@@ -52,23 +53,26 @@ class CapturedTrajectory {
   [[nodiscard]] std::optional<double> capture_s() const noexcept {
     return is_captured_ ? std::optional{capture_tau_s_} : std::nullopt;
   }
-  [[nodiscard]] double onset_tau_s() const noexcept { return onset_tau_s_; }  ///< Of the next slip.
-  /// For the rows after the onset, in the order of time.
+  /// Onset of the next slip after the first point, s: the capture if S of the next slip is not above the
+  /// coefficient there; infinity if the belt never raises c to S.
+  [[nodiscard]] double onset_tau_s() const noexcept { return onset_tau_s_; }
+  /// Basis to pass to residual() for the rows of one slip in the order of time.
   [[nodiscard]] model::TurnedBasis turned_basis() const noexcept {
     return model::TurnedBasis{shared_.oscillator()};
   }
-  /// Residual of a row, in standard deviations.
+  /// Residual of a row, in standard deviations; 0 for a stray.
   [[nodiscard]] double residual(const ScanRow& row, model::TurnedBasis& basis) const noexcept;
 
-  /// Normal equations of the residuals.
+  /// Normal equations of the residuals, in the order of Parameters.
   struct Equations {
     Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
-    Eigen::Vector4d gradient = Eigen::Vector4d::Zero();
-    double cost = 0.0;
+    Eigen::Vector4d gradient = Eigen::Vector4d::Zero();  ///< Negative gradient of the cost.
+    double cost = 0.0;                                   ///< In units of log-likelihood.
   };
   /// Prior terms: S − K of the next slip, and the shortfall of c′ below the stick rate.
+  /// \param typical_delta_mu > 0.
   [[nodiscard]] Equations unusual(double typical_delta_mu) const noexcept;
-  /// Prior terms plus the residuals of the rows, with Huber's weights.
+  /// Prior terms plus the residuals of the rows, with Huber's weights (kChoiceLimit).
   [[nodiscard]] Equations equations(std::span<const ScanRow> rows, double typical_delta_mu) const noexcept;
 
  private:
@@ -110,7 +114,10 @@ struct FittedCapture {
 };
 
 /// Trajectory of least cost, from a first guess. Bounded time, no allocation.
+/// \param first  first guess, with its equations for these rows.
+/// \param sigma  noise of one scan: S − K of the next slip stays above −sigma.
 /// \param most  limit of the iterations.
+/// \return the best trajectory found, converged or not; the first guess if most is 0.
 [[nodiscard]] FittedCapture fit_captured(const FittedCapture& first, std::span<const ScanRow> rows,
                                          const model::SharedParameters& shared, const BeltBelow& belt,
                                          double typical_delta_mu, double sigma, int most) noexcept;

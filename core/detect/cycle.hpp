@@ -1,5 +1,6 @@
 /// \file
-/// One cycle of stick and slip, as detected.
+/// Cycle: a row of a test's table of cycles, from one slip to the next, whether or not the sled stuck in
+/// between. Filled while the test runs, and anew at its end.
 #pragma once
 
 #include <cstdint>
@@ -9,25 +10,27 @@
 
 namespace stickslip::detect {
 
-/// Bits of Cycle::flags.
+/// Bits of Cycle::flags. "Inside" is from this peak to the next; in the last cycle to its trough, or, while
+/// the test runs, to the end of the test.
 enum CycleFlag : std::uint8_t {
   kCycleHasSpike = 1U << 0U,     ///< A spike was replaced inside.
   kCycleHasGap = 1U << 1U,       ///< Scans are missing inside.
   kCycleIsSaturated = 1U << 2U,  ///< The converter was at a rail inside.
   kCycleCaptured = 1U << 3U,     ///< The slip ended in sticking.
-  kCycleIsFirst = 1U << 4U,      ///< The first slip of the pull, or after a hold: not representative.
+  /// The first slip of the test, or (set at the end of the test) after a hold: not representative.
+  kCycleIsFirst = 1U << 4U,
 };
 
-/// A cycle, from one slip to the next. Times are seconds after scan 0 of the test's record: (scan index −
-/// first index of the record) / granted rate. NaN if unknown.
+/// A cycle, from one slip to the next. Times of events are seconds after the first scan of the test's record:
+/// (scan index − first index of the record) / granted rate. Members that are unknown are set to NaN.
 struct Cycle {
   std::int64_t number = 0;         ///< From 0.
   base::ScanIndex first_scan = 0;  ///< Scan nearest to the peak, index of the acquisition.
   double onset_time_s = 0.0;       ///< Slip onset.
   double capture_time_s = 0.0;     ///< Slip ends in sticking; NaN if it does not.
   double peak_time_s = 0.0;        ///< Maximum of the force, interpolated between scans.
-  double period_s = 0.0;           ///< Peak to next peak; NaN for the last cycle.
-  double stick_time_s = 0.0;       ///< Capture of the slip before to this onset; NaN if not seen.
+  double period_s = 0.0;           ///< Peak to next peak; NaN for the last cycle and before a break.
+  double stick_time_s = 0.0;       ///< From the capture before (or rest in a hold) to this onset.
   double slip_time_s = 0.0;        ///< Onset to capture; NaN if not captured.
   double peak = 0.0;               ///< Coefficient at the maximum, interpolated.
   double trough = 0.0;             ///< Coefficient at the following minimum, interpolated.
@@ -36,12 +39,13 @@ struct Cycle {
   double delta_mu_standard_error = 0.0;
   double slip_speed_ratio = 0.0;  ///< Largest slip speed over drive speed [Penner 1995, (18)].
   std::uint8_t flags = 0;         ///< CycleFlag bits.
-  /// Pull speed at the onset if the speed changes; else NaN.
+  /// Pull speed at the onset if it is measured or changes; else NaN. Set at the end of the test.
   double pull_speed_m_per_s = std::numeric_limits<double>::quiet_NaN();
-  /// Log-likelihood ratio of capture over free oscillation; > 0 for captured. From the fit of the whole test,
-  /// or, without that, from the time the cycle closed; NaN if undetermined, as for the last slip.
+  /// Log-likelihood ratio of capture over free oscillation: > 0 speaks for capture. Set at the end of the
+  /// test, from the fit of the whole test or, without that, from LiveCycle::evidence; NaN if undetermined, as
+  /// for the last slip.
   double capture_evidence = std::numeric_limits<double>::quiet_NaN();
-  /// Log-likelihood ratio at the live decision, and the time of that decision.
+  /// Log-likelihood ratio at the live decision, and the time of that decision; NaN if there was none.
   double live_capture_evidence = std::numeric_limits<double>::quiet_NaN();
   double live_decision_time_s = std::numeric_limits<double>::quiet_NaN();
 };

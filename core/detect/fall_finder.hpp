@@ -13,7 +13,7 @@
 
 namespace stickslip::detect {
 
-/// A fall of the force between two turning points. Times are in scans after the first scan.
+/// A fall of the force between two turning points. Positions are in scans after the first scan.
 struct Fall {
   double peak_at = 0.0;    ///< Position of the maximum, interpolated between scans.
   double trough_at = 0.0;  ///< Position of the following minimum, interpolated.
@@ -22,8 +22,8 @@ struct Fall {
   /// Scans from the last above 90 % to the first below 10 % of the drop. For a fall of more than
   /// signal::kMostSteps scans it may be too large by 0.2 % of the time from peak to trough.
   double duration = 0.0;
-  double rise_duration = 0.0;  ///< Scans from the turning point before to the peak.
-  double rise_from = 0.0;      ///< Value at that turning point.
+  double rise_duration = 0.0;  ///< Scans from the minimum before to the peak; 0 if the trace begins there.
+  double rise_from = 0.0;      ///< Median of three at that turning point.
 
   double robust_drop = 0.0;  ///< Drop of the median of three, which noise hardly affects.
 
@@ -37,11 +37,13 @@ struct Fall {
 class FallFinder {
  public:
   /// \param value       despiked coefficient of the next scan.
-  /// \param hysteresis  > 0; the caller scales it to the noise and may change it from scan to scan.
-  /// \return the fall that this scan confirms: the force has risen from the trough by the hysteresis.
+  /// \param hysteresis  > 0; the caller scales it to the noise and may change it from scan to scan. Infinite:
+  ///        no turning point is confirmed.
+  /// \return the fall that this scan confirms, else nullopt: the force has risen from the trough by more than
+  /// the hysteresis. A fall with which the trace ends is not returned.
   [[nodiscard]] std::optional<Fall> add(double value, double hysteresis);
 
-  /// Scans since the last confirmed turning point.
+  /// Scans since the last confirmed turning point, or since the first scan; not before the first add().
   [[nodiscard]] double scans_since_turn() const noexcept;
   [[nodiscard]] bool falling() const noexcept { return direction_ == Direction::kDown; }
   /// Positions of the highest and lowest median since the last confirmed turning points: while falling(), of

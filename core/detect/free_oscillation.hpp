@@ -11,9 +11,9 @@
 
 namespace stickslip::detect {
 
-/// Huber's limit for the choice between two trajectories; for estimates it is estimate::kHuberLimit
-/// (core/estimate/huber.hpp). The wrong trajectory has residuals of several standard deviations; the smaller
-/// limit would halve the likelihood ratio (docs/detector-limits.md).
+/// Huber's limit for the choice between two trajectories, in standard deviations; for estimates it is
+/// estimate::kHuberLimit. The wrong trajectory has residuals of several standard deviations, which that
+/// smaller limit would hide (docs/detector-limits.md).
 inline constexpr double kChoiceLimit = 3.0;
 
 /// Change of the cost, in units of log-likelihood, below which the fit has converged.
@@ -22,7 +22,9 @@ inline constexpr double kCostConverged = 1e-2;
 /// Normal equations of rows about a free oscillation, in scalars, which is faster for three parameters.
 class FreeEquations {
  public:
-  /// \param weighted  with Huber's weights; otherwise all weights are 1.
+  /// Adds a row.
+  /// \param p  the same for all rows.
+  /// \param weighted  with Huber's weights; otherwise all weights are 1. The cost is Huber's in either case.
   void add(const ScanRow& row, const FreeOscillation& p, bool weighted = true) noexcept {
     const double z = row.free_residual(p);
     cost += estimate::huber_cost(z, kChoiceLimit);
@@ -50,10 +52,11 @@ class FreeEquations {
     matrix << n00_, n01_, n02_, n01_, n11_, n12_, n02_, n12_, n22_;
     return matrix;
   }
+  /// Negative gradient of the cost.
   [[nodiscard]] Eigen::Vector3d gradient() const noexcept { return {g0_, g1_, g2_}; }
 
   double cost = 0.0;
-  bool all_within = true;  ///< No residual exceeded Huber's limit.
+  bool all_within = true;  ///< All weights were 1: no residual of a weighted row exceeded Huber's limit.
 
  private:
   double n00_ = 0.0;
@@ -67,7 +70,9 @@ class FreeEquations {
   double g2_ = 0.0;
 };
 
-/// \param p  first guess; becomes the parameters of least cost. \return that cost.
+/// Fits a free oscillation with Huber's weights (kChoiceLimit), in at most three reweightings.
+/// \param p  first guess; becomes the parameters of least cost; unchanged if the rows do not determine them.
+/// \return Huber's cost at p.
 double fit_free(std::span<const ScanRow> rows, FreeOscillation& p) noexcept;
 
 }  // namespace stickslip::detect

@@ -17,8 +17,8 @@ namespace stickslip::detect {
 
 /// Estimator of S and K of a cycle, in the order of rising computing time (docs/accuracy.md).
 enum class EstimatorTier {
-  kTurningPoints,  ///< Peak and trough between the scans, and the closed forms of the turning points.
-  kFit,            ///< Maximum likelihood of the closed form on all scans.
+  kTurningPoints,  ///< Closed forms of the turning points, from peak and trough interpolated between scans.
+  kFit,            ///< Maximum likelihood of the closed form on all usable scans.
 };
 
 inline constexpr std::array<std::pair<EstimatorTier, std::string_view>, 2> kEstimatorTierNames{{
@@ -38,7 +38,8 @@ inline constexpr std::array<std::pair<EstimatorTier, std::string_view>, 2> kEsti
   return "fit";
 }
 
-/// The estimator of this name, also one of version 0.1; nullopt if it is unknown.
+/// Estimator of this name; kTurningPoints for the names of version 0.1 (is_former_estimator()). Nullopt if
+/// the name is unknown.
 [[nodiscard]] constexpr std::optional<EstimatorTier> estimator_tier_from_name(
     std::string_view text) noexcept {
   if (is_former_estimator(text)) return EstimatorTier::kTurningPoints;
@@ -48,13 +49,14 @@ inline constexpr std::array<std::pair<EstimatorTier, std::string_view>, 2> kEsti
   return std::nullopt;
 }
 
-/// Phase of a test. Phases follow in this order; kEnd may follow any.
+/// Phase of a test. Phases follow in this order, but kFirstSlip goes back to kLoading if the fall was no
+/// slip; kEnd may follow any.
 enum class Phase {
-  kIdle,       ///< No pull yet.
+  kIdle,       ///< The force has not risen yet.
   kLoading,    ///< The force rises for the first time.
-  kFirstSlip,  ///< The force has fallen; the end of this slip is not decided yet.
-  kCycles,     ///< All after that.
-  kEnd,
+  kFirstSlip,  ///< The force has fallen; how a slip ended is not decided yet.
+  kCycles,     ///< The end of at least one slip is decided.
+  kEnd,        ///< LiveDetector::end() was called.
 };
 
 [[nodiscard]] constexpr std::string_view name(Phase phase) noexcept {
@@ -62,17 +64,20 @@ enum class Phase {
   return kNames[static_cast<std::size_t>(phase)];
 }
 
-/// A cycle with its live estimates. NaN if unknown.
+/// A cycle with its live estimates. NaN if unknown, as S and K of a slip that did not begin from sticking.
 struct LiveCycle {
   Cycle cycle;
   double S = std::numeric_limits<double>::quiet_NaN();
   double K = std::numeric_limits<double>::quiet_NaN();
-  /// Log-likelihood ratio of captured over free at the decision, or at the end if there was none.
+  /// Log-likelihood ratio of captured over free at the decision, or at the last test if there was none; 0 if
+  /// it was too small to be computed (Budget::decisive).
   double evidence = std::numeric_limits<double>::quiet_NaN();
-  double decided_time_s = std::numeric_limits<double>::quiet_NaN();  ///< When it was decided.
+  /// When it was decided how the slip ended, on the time axis of `cycle`.
+  double decided_time_s = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// A fall of the force at its detection; whether it is a slip is decided when it is over.
+/// A fall of the force at its detection; whether it is a slip is decided when it is over. LiveDetector counts
+/// scans from the first one added, without those in gaps; TestAnalysis gives indices of the acquisition.
 struct FallBegun {
   base::ScanIndex peak_scan = 0;  ///< Of the highest median of three scans.
   double peak = 0.0;              ///< That median.
@@ -82,11 +87,13 @@ struct FallBegun {
 /// Present state of a test.
 struct LiveState {
   Phase phase = Phase::kIdle;
-  model::Regime regime =
-      model::Regime::kUndecided;  ///< Stick-slip, ring-down or steady sliding; undecided before the first.
-  /// Onset (the peak if unknown) of the slip that was not captured; NaN unless the regime is ring-down.
+  /// By the slip decided last: stick-slip, or ring-down, which becomes steady sliding when it has died away.
+  /// Undecided until a slip is decided.
+  model::Regime regime = model::Regime::kUndecided;
+  /// Onset (the peak if unknown) of the first slip that was not captured, on the time axis of Cycle; NaN
+  /// unless the regime is ring-down.
   double ring_down_since_s = std::numeric_limits<double>::quiet_NaN();
-  std::int64_t slip_count = 0;
+  std::int64_t slip_count = 0;      ///< Slips confirmed so far, with the one under way.
   std::optional<LiveCycle> latest;  ///< The cycle closed last.
 };
 

@@ -36,10 +36,11 @@ struct LiveSettings {
   double scan_rate_Hz = 350.0;    ///< Granted; > 0.
   double step_coefficient = 0.0;  ///< One A/D step; 0 if unknown.
   EstimatorTier estimator = EstimatorTier::kFit;
-  estimate::SharedPrior prior;  ///< The tester's characterisation, if there is one.
-  bool despike = true;
+  estimate::SharedPrior prior;  ///< The tester's characterisation, if there is one; else empty.
+  bool despike = true;          ///< false: spikes stay in the trace and are not looked for.
 };
 
+/// Follows a test scan by scan. Times are seconds after the first scan added, with the time of missing scans.
 /// Thread-bound. 200 kB, taken when it is made.
 class LiveDetector {
  public:
@@ -50,17 +51,22 @@ class LiveDetector {
   explicit LiveDetector(const LiveSettings& settings);
 
   /// The next scan.
-  /// \return the cycle that it closes: at the peak after the next trough its successor is seen.
+  /// \return the cycle that it closes, else nullopt. A cycle closes when the next slip is confirmed, at the
+  /// rise after that slip's trough, or when its ring-down has died away. Cycle::first_scan counts from the
+  /// first scan added, with missing scans.
   std::optional<LiveCycle> add(double coefficient, bool saturated);
-  /// `count` scans are missing.
+  /// `count` scans are missing before the next one.
   void gap(std::int64_t count) noexcept;
-  /// The test is over. \return the last cycle, if one is open.
+  /// The test is over. The scans that the despiker still holds back are not used.
+  /// \return the last cycle, if one is open; else nullopt.
   std::optional<LiveCycle> end() noexcept;
 
   [[nodiscard]] const LiveState& state() const noexcept { return state_; }
-  /// The fall detected at the latest scan, if any; scan numbers count from the first scan added.
+  /// The fall detected at the latest scan, if any; its scan numbers count from the first scan added, without
+  /// missing scans.
   [[nodiscard]] const std::optional<FallBegun>& fall_begun() const noexcept { return fall_begun_; }
-  /// The slip under way with its present estimates; null if there is none.
+  /// The slip under way with its present estimates; null if there is none. Valid until the next add(), gap()
+  /// or end(). Number, first_scan and flags of its scans are set when the cycle closes.
   [[nodiscard]] const LiveCycle* under_way() const noexcept {
     return follower_.is_open() ? &follower_.slip() : nullptr;
   }

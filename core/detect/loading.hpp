@@ -10,10 +10,13 @@
 
 namespace stickslip::detect {
 
-/// The loading has begun when some scans in a row exceed the lowest one by the drop of a slip.
+/// Detects the loading: three scans in a row exceed the lowest one so far by more than the drop of a slip,
+/// SlipRule::kSignificantSigmas.
 class Loading {
  public:
-  /// \param count  scans followed, with this one. \return whether the loading is seen at this scan.
+  /// \param sigma  noise of one scan; infinite while unknown.
+  /// \param count  scans so far, with this one.
+  /// \return whether the loading is seen at this scan.
   bool add(double value, double sigma, std::int64_t count) noexcept {
     lowest_ = std::min(lowest_, value);
     above_ = value - lowest_ > SlipRule::kSignificantSigmas * sigma ? above_ + 1 : 0;
@@ -21,7 +24,8 @@ class Loading {
     began_at_ = static_cast<double>(count - kLoadedScans);
     return true;
   }
-  /// Whether a position lies behind the begin of the loading.
+  /// Whether a position, in scans after the first, is the begin of the loading or later. False until the
+  /// loading is seen.
   [[nodiscard]] bool is_behind_begin(double position) const noexcept { return position >= began_at_; }
 
  private:

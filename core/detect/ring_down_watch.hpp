@@ -9,8 +9,8 @@
 
 namespace stickslip::detect {
 
-/// Fits K, a cosine and a sine with known ω and γ to each period by least squares. The basis functions are
-/// advanced by a rotation from scan to scan and restarted each period. O(1) for a scan, no allocation.
+/// Fits K, a decaying cosine and sine with known ω and γ to each period by least squares. A period is a whole
+/// number of scans, five at least. O(1) for a scan, no allocation.
 class RingDownWatch {
  public:
   struct Amplitude {
@@ -21,13 +21,15 @@ class RingDownWatch {
     [[nodiscard]] bool is_over() const noexcept { return !(value >= 3.0 * standard_error); }
   };
 
-  /// \param omega > 0. \param gamma 1/s. \param scan_rate_Hz > 0.
+  /// Begins a period with the next scan, also where one was under way: to be called after a gap.
+  /// \param omega  rad/s, damped, > 0. \param gamma  1/s. \param scan_rate_Hz > 0.
   void start(double omega, double gamma, double scan_rate_Hz) noexcept;
   void stop() noexcept { running_ = false; }
   [[nodiscard]] bool running() const noexcept { return running_; }
 
   /// \param value  coefficient. \param usable  false: the scan only advances time.
-  /// \return the amplitude when this scan ends a period with four usable scans at least.
+  /// \return the amplitude if this scan ends a period with four usable scans at least. Nullopt otherwise, and
+  /// if not running().
   std::optional<Amplitude> add(double value, bool usable) noexcept {
     if (!running_) return std::nullopt;
     return take(value, usable);

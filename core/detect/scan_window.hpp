@@ -16,25 +16,25 @@
 
 namespace stickslip::detect {
 
-/// Parameters of a free oscillation, in which it is linear: K, c(0) − K, c′(0), with time from the first
-/// point.
+/// Parameters of a free oscillation, in which it is linear: K, c(0) − K, c′(0) in 1/s, with time from the
+/// first point.
 using FreeOscillation = Eigen::Vector3d;
 
 /// Mean of neighbouring points. Members have no initial values, since an array of rows is only partly used.
 struct ScanRow {
-  double tau_s;  ///< Mean time after the first point.
-  double value;  ///< Mean of the points.
-  double scale;  ///< √count/σ; 0 for a stray.
-  double root_count;
-  double half_spread_s2;
+  double tau_s;             ///< Mean time after the first point of the slip.
+  double value;             ///< Mean over its scans.
+  double scale;             ///< root_count/σ; 0 for a stray.
+  double root_count;        ///< √ of the number of its scans.
+  double half_spread_s2;    ///< Half the variance of their times.
   double by_D;              ///< Coefficient of c(0) − K: derivative of the mean over the points.
   double by_rate;           ///< Coefficient of c′(0), s.
-  double begin_s;           ///< Time of its first point,
+  double begin_s;           ///< CyclePoint::time_s of its first point,
   double end_s;             ///< and of its last.
-  std::size_t first_point;  ///< Index of it.
+  std::size_t first_point;  ///< Index of its first point.
   bool stray;               ///< Outlier, left out of the fits.
 
-  /// Residual about a free oscillation, in standard deviations.
+  /// Residual about a free oscillation, in standard deviations; 0 for a stray.
   [[nodiscard]] double free_residual(const FreeOscillation& p) const noexcept {
     return (value - (p[0] + (by_D * p[1] + by_rate * p[2]))) * scale;
   }
@@ -43,7 +43,11 @@ struct ScanRow {
 /// Rows of one slip, at most forty a period. Rows of the last evaluation are reused.
 class ScanWindow {
  public:
-  /// \return number of leading rows that are unchanged since the last call, with the same ω, γ and noise.
+  /// Makes the rows of these points. Rows that are unchanged keep their outlier marks.
+  /// \param points  of one slip, not empty, at most CycleBuffer::kMostPoints.
+  /// \param sigma  noise of one scan.
+  /// \return number of leading rows that are unchanged since the last call; 0 after a change of ω, γ, sigma
+  /// or the first point.
   std::size_t lay_out(std::span<const estimate::CyclePoint> points, const model::SharedParameters& shared,
                       double sigma) noexcept;
 
@@ -53,7 +57,8 @@ class ScanWindow {
   [[nodiscard]] double sigma() const noexcept { return sigma_; }
 
   /// Marks the row of [from, to) with the largest residual as an outlier, if it exceeds
-  /// estimate::kStraySigmas and not too many rows are marked already.
+  /// estimate::kStraySigmas. Refused if more than three rows, or one in five, would be marked, or three or
+  /// fewer of [from, to) would be left.
   /// \param sigmas_off  residual of a row about the better trajectory, in standard deviations.
   /// \return whether a row was marked.
   template <typename SigmasOff>

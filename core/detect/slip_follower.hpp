@@ -17,8 +17,8 @@
 
 namespace stickslip::detect {
 
-/// Follows one slip at a time. Fits of up to 256 points are done one per scan, so that no scan waits for two.
-/// Fixed memory; never allocates.
+/// Follows one slip at a time. step() does at most one task, a test or a fit of up to 256 points, for each
+/// scan; force() does all that remain. Fixed memory; never allocates.
 class SlipFollower {
  public:
   /// \param scan_rate_Hz > 0.
@@ -30,19 +30,22 @@ class SlipFollower {
   /// Reports a fall under way: times of its peak and of its lowest point so far.
   void falls(double peak_s, double lowest_s) noexcept;
   /// Scans are missing after the last one; later scans are not connected with earlier ones.
+  /// \param now_s  time of the last scan before the gap.
   void gap(double now_s) noexcept;
 
   /// Begins a confirmed slip and ends the one before; call force() and read slip() first.
   /// \param peak_s,trough_s  times of the fall's turning points.
-  /// \param begins_from_stick  the slip before was captured. A slip too large for a free oscillation is taken
-  ///        to begin from sticking in any case.
+  /// \param begins_from_stick  false only in a ring-down, whose oscillation goes on. A slip too large for a
+  ///        free oscillation is taken to begin from sticking in any case.
+  /// \param sigma  noise of one scan.
   void open(const Fall& fall, double peak_s, double trough_s, bool begins_from_stick, double sigma) noexcept;
   /// Does the task that is due, if there is one. \return true if it decided how the slip ends.
   [[nodiscard]] bool step(double now_s, double sigma) noexcept {
     return state_ > State::kDone && !(now_s < now_.next_task_s) && do_task(now_s, sigma);
   }
   /// Does all remaining tasks with the available scans.
-  /// \param has_next  a slip follows.
+  /// \param has_next  a slip follows: then the end is decided without kDecisive, as captured if that is
+  ///        likelier, as free at kDecisiveLikelihoodRatio.
   /// \return true if this decided how the slip ends.
   [[nodiscard]] bool force(double now_s, double sigma, bool has_next) noexcept;
   void close() noexcept { on(Event::kClosed); }

@@ -9,20 +9,20 @@
 namespace stickslip::detect {
 
 /// A slip is a fall that is significant against the measured noise and fast relative to the rise before it,
-/// and the rise contains no fall larger than kLargestFallInStick of the drop. Limits are in standard
-/// deviations σ of the noise of one scan, or ratios; none depends on the scan rate or the file.
+/// and the rise contains no fall of kLargestFallInStick of the drop or more. Limits are in standard
+/// deviations σ of the noise of one scan, in scans, or ratios; none depends on the scan rate or the file.
 ///
-/// They were placed on measured traces of paper on paper: textbook saw-teeth have slips of 16 σ up
-/// with falls of at most 0.10 of the rise before; a nearly sinusoidal trace has slips of 22 σ up
-/// and falls of at most 0.85 of the rise. Irregular sliding has, among two dozen falls of 6–12 σ,
-/// at most six of 12–17 σ; each has a smaller one of more than a third of it in the rise before, or
-/// takes 1.10 of that rise or more. So at 2000 scans/s and at every rate down to 350.
+/// They were placed on measured traces of paper on paper: textbook saw-teeth have slips of 16 σ up that take
+/// at most 0.10 of the time of the rise before; a nearly sinusoidal trace has slips of 22 σ up that take at
+/// most 0.85 of it. Irregular sliding has, among two dozen falls of 6–12 σ, at most six of 12–17 σ; each has
+/// a smaller one of more than a third of it in the rise before, or takes 1.10 of the time of that rise or
+/// more. So at 2000 scans/s and at every rate down to 350.
 class SlipRule {
  public:
   /// Hysteresis of the turning points in σ: 9 standard deviations of the median of three, which are 0.67 σ
   /// each.
   static constexpr double kHysteresisSigmas = 6.0;
-  /// Smallest drop of a slip in σ.
+  /// Smallest Fall::robust_drop of a slip in σ.
   static constexpr double kSignificantSigmas = 12.0;
   /// Largest fall inside the rise, relative to the drop; with a larger one the sled was sliding, not
   /// sticking.
@@ -32,7 +32,8 @@ class SlipRule {
   /// it is at most asin(0.8)/(π/2) = 0.59 of it, the 10–90 % time of half an oscillation.
   static constexpr double kDurationExcess = 2.0;
 
-  /// \param falls come in the order of time. \param sigma noise of one scan.
+  /// To be called for every fall in the order of time, since small falls are what a rise contains.
+  /// \param sigma  noise of one scan.
   [[nodiscard]] bool is_slip(const Fall& fall, double sigma) noexcept;
 
  private:

@@ -26,7 +26,8 @@ struct TurningPoint {
 /// Slope of the points with values between `low` and `high`, with Huber's weights about their median line: a
 /// fast loading has few points, and one missed spike would change the slope by 10 %.
 /// \param sigma  noise of one scan.
-/// \return nothing with fewer than two points there.
+/// \return 1/s; nullopt without two points there at different times; the slope of the median line if half of
+/// the points or more are off it by more than estimate::kStraySigmas.
 [[nodiscard]] std::optional<double> slope_between(std::span<const estimate::CyclePoint> points, double low,
                                                   double high, double sigma) noexcept;
 
@@ -39,9 +40,10 @@ struct TurningPoint {
 struct SlipOfPeak {
   double delta_mu = 0.0;          ///< S − K ≥ 0; 0 if the peak is lower than that for S = K.
   double peak_time_s = 0.0;       ///< t₁, from the onset to the peak.
-  double slip_speed_ratio = 0.0;  ///< [18]
+  double slip_speed_ratio = 0.0;  ///< Largest slip speed over drive speed [18].
 };
-/// [2] with damping, [17], solved for S − K. \param peak_above_K > 0. \param stick_rate_per_s r > 0.
+/// Finds the slip whose force peaks at this height: solves the closed form of the peak, [2] with damping
+/// [17], for S − K. \param peak_above_K  peak less K, > 0. \param stick_rate_per_s  r > 0.
 [[nodiscard]] SlipOfPeak slip_of_peak(double peak_above_K, double stick_rate_per_s,
                                       const model::Oscillator& oscillator) noexcept;
 

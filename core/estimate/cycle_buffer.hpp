@@ -26,19 +26,20 @@ struct CyclePoint {
 };
 
 /// Holds at most kMostPoints points, whatever the scan rate and the length of the stick. When it is full,
-/// neighbouring points are merged into blocks. A block may be as long as a fraction of its age; one
-/// oscillation back it spans at most an eighth of an oscillation. This loses little of a stick, whose mean
-/// lies on its line. keep_fine() limits the blocks of a slip under way. The mean of a curved trajectory
-/// differs from its value at the mean time by c″·spread/2 + O(c⁗ h⁴/1920) for a block of length h. A
-/// comparison must add the first term; the rest is below 10⁻⁴ of the amplitude for blocks of a tenth of an
-/// oscillation. Never allocates. add() is amortised O(1) and at worst a few passes over kMostPoints points.
+/// neighbouring points are merged into blocks. A block is at most as long as a fraction of its age: 1/64 if
+/// that leaves room, 1 at worst. This loses little of a stick, whose mean lies on its line. keep_fine()
+/// limits the blocks of a slip under way. The mean of a curved trajectory differs from its value at the mean
+/// time by c″·spread/2 + O(c⁗ h⁴/1920) for a block of length h. A comparison must add the first term; the
+/// rest is below 10⁻⁴ of the amplitude for blocks of a tenth of an oscillation. Never allocates. add() is
+/// amortised O(1) and at worst a few passes over kMostPoints points.
 class CycleBuffer {
  public:
   static constexpr std::size_t kMostPoints = 256;
 
   /// \param time_s  rises from call to call. Leave out unusable scans.
   void add(double time_s, double value) noexcept { add({time_s, value, 0.0, 1.0, time_s, time_s}); }
-  /// Limits the length of blocks in [from_s, to_s] to longest_s. Replaces the limit of an earlier call.
+  /// Limits the length of blocks in [from_s, to_s] to longest_s. Replaces the limit of an earlier call. The
+  /// limit is dropped if the buffer overflows with it.
   void keep_fine(double from_s, double to_s, double longest_s) noexcept;
   /// Removes the points that end before time_s.
   void forget_before(double time_s) noexcept;
@@ -68,8 +69,8 @@ class CycleBuffer {
 [[nodiscard]] std::span<const CyclePoint> between(std::span<const CyclePoint> points, double from_s,
                                                   double to_s) noexcept;
 
-/// Replaces the contents by the usable scans [first, end) of a trace, of which the first begins a slip: its
-/// period is kept fine. [first, end) must not be empty.
+/// Replaces the contents by the usable scans [first, end) of a trace, without the drift. In the period_s
+/// after the first scan blocks are at most period_s/40 long. [first, end) must not be empty.
 void read_slip(CycleBuffer& buffer, const Trace& trace, std::size_t first, std::size_t end, double period_s);
 
 }  // namespace stickslip::estimate

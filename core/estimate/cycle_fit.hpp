@@ -18,16 +18,16 @@
 
 namespace stickslip::estimate {
 
-/// Result of fit_cycle().
+/// Result of fit_cycle(). Unless it converged, its members are no estimates.
 struct CycleFit {
   bool converged = false;
   model::SlipParameters slip;
   model::SharedParameters shared;
-  Eigen::Matrix3d covariance =
-      Eigen::Matrix3d::Zero();  ///< Of (onset, S, K), including the uncertainty of ω, γ and r.
-  SharedEvidence evidence;      ///< Information about ω, γ and r from these scans alone, without the prior.
-  double capture_s = 0.0;       ///< After the onset; infinity if not captured.
-  double residual_sigmas = 0.0;  ///< Standard deviation of the residuals, in σ.
+  /// Of (onset, S, K), including the uncertainty of ω, γ and r.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  SharedEvidence evidence;  ///< Information about ω, γ and r from these scans alone, without the prior.
+  double capture_s = 0.0;   ///< After the onset; infinity if not captured.
+  double residual_sigmas = 0.0;  ///< HuberSums::residual_sigma().
 
   [[nodiscard]] double delta_mu() const noexcept { return slip.S - slip.K; }
   [[nodiscard]] double delta_mu_variance() const noexcept {
@@ -35,7 +35,9 @@ struct CycleFit {
   }
 };
 
+/// Fits one slip. The speed of the belt is taken to be constant.
 /// \param points  of one slip: from the stick before it to the stick, or the free oscillation, after it.
+/// \param captured  the slip ended in sticking.
 /// \param start   first guess of onset, S and K.
 /// \param shared  first guess of ω, γ and r.
 /// \param sigma   noise of one scan, > 0.

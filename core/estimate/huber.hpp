@@ -53,7 +53,8 @@ class HuberSums {
   /// errors are undefined.
   [[nodiscard]] double freedom(double parameters) const noexcept { return weight_sum_ - parameters; }
 
-  /// Standard deviation of the residuals in σ; 0 without freedom.
+  /// Robust standard deviation of the residuals in σ, √(Σ w z²/freedom): kHuberResidualOfNoise, not 1, for
+  /// Gaussian noise of standard deviation σ. 0 without freedom.
   [[nodiscard]] double residual_sigma(double parameters) const noexcept {
     return freedom(parameters) > 0.0 ? std::sqrt(square_sum_ / freedom(parameters)) : 0.0;
   }
@@ -66,11 +67,11 @@ class HuberSums {
     return left > 0.0 ? psi_square_sum_ / left / inlier_part() : 0.0;
   }
 
-  /// Factor by which (Σ w J Jᵀ)⁻¹ becomes the covariance, in σ². The covariance is κ² · Σψ²/(n − p)/(mean
-  /// ψ′)² · (JᵀJ)⁻¹, where the weighted sum is smaller by the mean weight. κ = 1 + (p/n)(1 − mean ψ′)/mean ψ′
-  /// is the correction for few residuals to each parameter [Huber 1981, (7.6.12)]: 1.8 % of a standard error
-  /// at n/p = 12. The covariance of weighted least squares would be 15 % too small, since it ignores that the
-  /// weights depend on the noise.
+  /// Factor by which (Σ w J Jᵀ)⁻¹ becomes the covariance, in σ²; 0 if there are no more residuals than
+  /// parameters. The covariance is κ² · Σψ²/(n − p)/(mean ψ′)² · (JᵀJ)⁻¹, where the weighted sum is smaller
+  /// by the mean weight. κ = 1 + (p/n)(1 − mean ψ′)/mean ψ′ is the correction for few residuals to each
+  /// parameter [Huber 1981, (7.6.12)]: 1.8 % of a standard error at n/p = 12. The covariance of weighted
+  /// least squares would be 15 % too small, since it ignores that the weights depend on the noise.
   [[nodiscard]] double covariance_scale(double parameters) const noexcept {
     if (!(count_ > parameters)) return 0.0;
     const double inliers = inlier_part();

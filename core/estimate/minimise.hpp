@@ -31,7 +31,8 @@ struct MinimiserLimits {
 ///     returns the decrease of the cost that the linear model predicts, NaN if the equations cannot be
 ///     solved.
 /// \param state,equations  first guess and its equations; become those of the least cost found.
-/// \return whether it converged. The cost never rises.
+/// \return whether it converged. It does not if the cost of the first guess is not finite, the iterations run
+/// out, or no step, however damped, lowers the cost.
 template <typename Problem>
 bool minimise(const Problem& problem, typename Problem::State& state, typename Problem::Equations& equations,
               const MinimiserLimits& limits) {

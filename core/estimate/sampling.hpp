@@ -22,11 +22,13 @@ struct SamplingVerdict {
   std::string reason;  ///< For people; empty if fine.
 };
 
-/// Expected frequency: ω/2π if the tester is characterised, else √(k/m)/2π from the stiffness; nullopt
-/// without either.
+/// Expected frequency: ω/2π if the tester is characterised, else √(k/m)/2π; nullopt without either a
+/// characterisation or stiffness and sled mass.
 [[nodiscard]] std::optional<double> expected_frequency_Hz(const model::Tester& tester,
                                                           const SharedPrior& prior);
 
+/// Judges the scans a cycle: refused below kFewestScansACycle, few below kFewScansACycle, not verifiable
+/// without a frequency.
 /// \param scan_rate_Hz > 0.
 [[nodiscard]] SamplingVerdict check_sampling(double scan_rate_Hz, std::optional<double> frequency_Hz);
 

@@ -8,15 +8,15 @@
 
 namespace stickslip::estimate {
 
-/// Gaussian likelihood of x = (ω, γ, r) from the scans of one cycle alone: its cost is ½ (x − x̂)ᵀ
-/// information (x − x̂).
+/// Gaussian likelihood of x = (ω, γ, r), in rad/s, 1/s and 1/s, from the scans of one cycle alone. Its cost
+/// is ½ (x − x̂)ᵀ information (x − x̂).
 struct SharedEvidence {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d weighted = Eigen::Vector3d::Zero();  ///< information · x̂
 };
 
-/// Information filter with fading memory: 32 cycles count. The prior does not fade. Fixed size; does not
-/// allocate.
+/// Information filter with fading memory: 32 cycles count. The prior does not fade. start() must be called
+/// before the others. Fixed size; does not allocate.
 class SharedPosterior {
  public:
   explicit SharedPosterior(SharedPrior prior) : prior_(std::move(prior)) {}
@@ -24,15 +24,20 @@ class SharedPosterior {
   /// ω and γ come from a characterisation of the tester.
   [[nodiscard]] bool characterised() const noexcept { return prior_.coupling.has_value(); }
 
-  /// Initial estimate from turning points and slopes. A characterised ω, and a stick rate known from the pull
-  /// speed, take precedence.
+  /// Initial estimate from turning points and slopes; forgets what was learnt. A characterised ω and γ, and a
+  /// stick rate known from the pull speed, take precedence; γ/2ω without a characterisation is
+  /// model::kTypicalGammaOver2Omega.
+  /// \param omega  rad/s, > 0. \param stick_rate_per_s > 0.
   void start(double omega, double stick_rate_per_s);
   /// Adds the information of one cycle and fades that of earlier ones. Ignores evidence that is not finite.
   void learn(const SharedEvidence& evidence);
-  /// Restarts the estimate of r after a change of the belt's speed.
+  /// Restarts the estimate of r after a change of the belt's speed. Keeps the prior and what was learnt of ω
+  /// and γ.
+  /// \param stick_rate_per_s  new first estimate, > 0.
   void forget_stick_rate(double stick_rate_per_s);
 
-  /// Prior and learnt information as terms of a fit's normal equations, linearised about `shared`.
+  /// Prior and learnt information as terms of a fit's normal equations, linearised about `shared`. The cost
+  /// is known up to a constant and may be negative.
   [[nodiscard]] PriorTerms at(const model::SharedParameters& shared) const;
   /// Present estimate.
   [[nodiscard]] const model::SharedParameters& best() const noexcept { return best_; }

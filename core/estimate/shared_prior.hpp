@@ -17,6 +17,7 @@ struct PriorTerms {
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  ///< Negative gradient of the cost.
 };
 
+/// Gaussian prior of ω, γ and r; empty if nothing is known.
 struct SharedPrior {
   /// Prior of ω and γ/2ω from a characterisation of the tester.
   struct Coupling {
@@ -34,6 +35,7 @@ struct SharedPrior {
   std::optional<Belt> belt;
 
   [[nodiscard]] bool empty() const noexcept { return !coupling && !belt; }
+  /// Terms for a fit's normal equations; zero if empty().
   /// \param shared  parameters about which r/ω₀² and γ/2ω are linearised.
   [[nodiscard]] PriorTerms at(const model::SharedParameters& shared) const;
 };

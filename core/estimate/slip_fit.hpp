@@ -7,8 +7,8 @@
 ///     const SlipFit fit = fit_slips(trace, windows, shared, sigma);
 ///
 /// The normal equations' 3 × 3 block of each slip is eliminated first (Schur complement), so that the time
-/// grows with the number of scans only. Robust by Huber's weights with k = 1.345, which keep 95 % efficiency
-/// for Gaussian noise [Huber, Ann. Math. Stat. 35:73–101, 1964].
+/// of an iteration is proportional to the number of scans. Robust by Huber's weights with k = 1.345, which
+/// keep 95 % efficiency for Gaussian noise [Huber, Ann. Math. Stat. 35:73–101, 1964].
 #pragma once
 
 #include <cstddef>
@@ -27,11 +27,13 @@ struct SlipWindow {
   std::size_t first = 0;
   std::size_t end = 0;
   bool captured = false;
-  model::SlipParameters slip;  ///< First guess; the estimate after the fit.
+  model::SlipParameters slip;  ///< First guess; the estimate after the fit. S and K without Trace::drift.
 
   // Set by fit_slips() for covariances.
-  Eigen::Matrix3d inverse_curvature = Eigen::Matrix3d::Zero();  ///< Of the slip's own block (onset, S, K).
-  Eigen::Matrix3d coupling = Eigen::Matrix3d::Zero();           ///< −∂(own)/∂(shared) at the optimum.
+  /// Covariance of (onset, S, K) if ω, γ and r were known.
+  Eigen::Matrix3d inverse_curvature = Eigen::Matrix3d::Zero();
+  /// −∂(onset, S, K)/∂(ω, γ, r) at the optimum.
+  Eigen::Matrix3d coupling = Eigen::Matrix3d::Zero();
 };
 
 /// Result of fit_slips(): shared parameters, covariances and cost.
@@ -39,16 +41,17 @@ struct SlipFit {
   bool converged = false;
   model::SharedParameters shared;
   Eigen::Matrix3d shared_covariance = Eigen::Matrix3d::Zero();  ///< Of (ω, γ, r).
-  double residual_sigma = 0.0;  ///< Standard deviation of a scan about the model.
-  std::size_t scan_count = 0;
-  double cost = 0.0;        ///< Huber's, of scans and prior.
-  double cost_scale = 0.0;  ///< HuberSums::cost_scale().
-  double freedom = 0.0;     ///< Degrees of freedom: usable scans less parameters.
+  double residual_sigma = 0.0;  ///< Scans about the model: σ times HuberSums::residual_sigma().
+  std::size_t scan_count = 0;   ///< Of all windows, unusable scans included.
+  double cost = 0.0;            ///< Huber's, of scans and prior.
+  double cost_scale = 0.0;      ///< HuberSums::cost_scale().
+  double freedom = 0.0;         ///< Degrees of freedom: usable scans less parameters.
 
+  // The windows are those that fit_slips() filled.
   /// Covariance of the mean of (onset, S, K) over `windows`, from noise alone: without the scatter from slip
   /// to slip.
   [[nodiscard]] Eigen::Matrix3d mean_covariance(const std::vector<SlipWindow>& windows) const;
-  /// Covariance of one slip's own parameters.
+  /// Covariance of one slip's (onset, S, K), including the uncertainty of ω, γ and r.
   [[nodiscard]] Eigen::Matrix3d covariance(const SlipWindow& window) const;
   /// Standard error of the slip's onset, s.
   [[nodiscard]] double onset_error_s(const SlipWindow& window) const;
@@ -61,12 +64,15 @@ struct SlipFit {
 /// step lowers.
 inline constexpr double kFitSettled = 1e-5;
 
+/// Fits all slips at once.
 /// \param sigma  noise of one scan, > 0; scales Huber's limit.
 /// \param windows,shared  first guess; `windows` receives the estimate. Each window needs at least four
 ///        usable scans.
 /// \param prior  of the shared parameters.
 /// \param settled  change of the cost below which the fit has converged whatever the cost's size.
-/// \return converged = false if no step lowers the cost or the equations are singular.
+/// \return converged = false without windows; if the first guess is not admissible: ω > 0, r > 0, |γ| < 2ω,
+/// S − K ≥ −6σ; if the fit does not settle in 60 iterations, 200 with a prior; or if the scans do not
+/// determine the parameters.
 [[nodiscard]] SlipFit fit_slips(const Trace& trace, std::vector<SlipWindow>& windows,
                                 const model::SharedParameters& shared, double sigma,
                                 const SharedPrior& prior = {}, double settled = kFitSettled);

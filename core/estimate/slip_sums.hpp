@@ -15,11 +15,15 @@
 
 namespace stickslip::estimate {
 
+/// Sums over scans about one slip, for the parameters (onset, S, K, ω, γ, r).
 class SlipSums {
  public:
   using Matrix = Eigen::Matrix<double, 6, 6>;
   using Vector = model::SlipModelPoint::Derivatives;
 
+  /// Adds a scan.
+  /// \param at  its model::SlipModel::place().
+  /// \param residual  scan less at.value.
   void add(const model::SlipPlace& at, double weight, double residual) noexcept {
     const double off = weight * residual;
     if (at.phase != model::SlipPhase::kSlip) {
@@ -39,7 +43,7 @@ class SlipSums {
     off_ += off * terms;
   }
 
-  /// Σ weight · by byᵀ, with the derivatives `by` of the scans' model.
+  /// Σ weight · by byᵀ, with the derivatives `by` of the model. \param model  the one that made the places.
   [[nodiscard]] Matrix normal(const model::SlipModel& model) const noexcept {
     Eigen::Matrix<double, kTerms, kTerms> products;
     for (int j = 0, k = 0; j < kTerms; ++j) {

@@ -21,21 +21,23 @@ struct Drift {
   [[nodiscard]] double at(double time_s) const noexcept { return rate_per_s * (time_s - zero_at_s); }
 };
 
-/// Columns of equal length, in the order of time.
+/// Scans of one test: columns of equal length, in the order of time.
 struct Trace {
-  base::LongColumn<double> time_s;        ///< (scan index − first index of the record) / granted rate.
-  base::LongColumn<double> value;         ///< Coefficient; a spike is replaced by the median around it.
-  base::LongColumn<std::uint8_t> usable;  ///< 0 for a spike or a saturated scan; fits leave it out.
+  base::LongColumn<double> time_s;  ///< (scan index − first index of the record) / granted rate.
+  base::LongColumn<double> value;   ///< Coefficient; a spike is replaced by what its neighbours have there.
+  /// 0 for a spike or a scan that is saturated or held at a limit; fits leave it out.
+  base::LongColumn<std::uint8_t> usable;
 
-  /// Drift that fits subtract from the trace and add to their results. Exact for the model: with c − βt in
-  /// place of c, K and S are constant and the stick rate is r − β.
+  /// Drift. Fits subtract it from the values, so that their S and K lack it; who reports S and K adds it.
+  /// Exact for the model: with c − βt in place of c, K and S are constant and the stick rate is r − β.
   Drift drift;
 
   /// Belt speed over the time of the trace.
   model::BeltMotion belt;
 
-  /// First scans after a break, rising: the motion between such a scan and the one before it is unknown. A
-  /// counted gap shorter than half an oscillation is no break.
+  /// Positions of the first scans after breaks, rising: the motion between such a scan and the one before it
+  /// is unknown. A counted gap shorter than half an oscillation is no break, unless the cycle that holds it
+  /// is too long.
   std::vector<std::size_t> breaks{};
   double lost_s = 0.0;  ///< Time without scans, over all gaps.
 
@@ -48,7 +50,8 @@ struct Trace {
   }
 };
 
-/// Of all scans; −∞ without any. Each is read once, in order, unlike by std::max_element.
+/// Largest coefficient of all scans, drift included; −∞ if there are none. Reads each scan once, in order
+/// (std::max_element goes back to the largest, which is slow from a file).
 [[nodiscard]] inline double largest_value(const Trace& trace) {
   double largest = -std::numeric_limits<double>::infinity();
   for (const double value : trace.value) largest = std::max(largest, value);
@@ -61,7 +64,8 @@ struct TraceScan {
   double level;
 };
 
-/// Appends the usable scans of [first, end): fits read a scan many times, a column of a file only here.
+/// Appends the usable scans of [first, end), without the drift, to `scans`. Fits then read them many times
+/// from memory, and a column in a file only once.
 inline void append_usable(const Trace& trace, std::size_t first, std::size_t end,
                           std::vector<TraceScan>& scans) {
   for (std::size_t k = first; k < end; ++k) {
@@ -78,7 +82,8 @@ inline void append_usable(const Trace& trace, std::size_t first, std::size_t end
   return first != trace.breaks.end() && at(*first) < to;
 }
 
-/// Time of a fractional scan position, by linear interpolation.
+/// Time of a fractional scan position, by linear interpolation; that of the last scan for positions after it.
+/// The trace must not be empty.
 [[nodiscard]] inline double time_at(const Trace& trace, double position) noexcept {
   const auto before =
       static_cast<std::size_t>(std::clamp(position, 0.0, static_cast<double>(trace.size() - 1)));

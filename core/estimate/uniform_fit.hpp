@@ -16,16 +16,21 @@ namespace stickslip::estimate {
 /// Result of fit_uniform().
 struct UniformFit {
   bool converged = false;
-  model::UniformParameters parameters;
+  model::UniformParameters parameters;  ///< S and K without Trace::drift.
+  /// Of (onset, S, K, ω, γ, r).
   model::UniformParameters::Matrix covariance = model::UniformParameters::Matrix::Zero();
-  double residual_sigma = 0.0;  ///< Standard deviation of a scan about the trajectory.
+  double residual_sigma = 0.0;  ///< Scans about the trajectory: σ times HuberSums::residual_sigma().
   double cost = 0.0;            ///< Huber's, of scans and prior.
   double scan_count = 0.0;      ///< Usable scans.
 };
 
-/// Least cost with Huber's weights, as fit_slips().
-/// \param first,end  scans of the pull. \param guess first guess; UniformTrajectory::make() must accept it.
+/// Fits periodic stick-slip with Huber's weights to the usable scans of a pull at constant speed.
+/// \param first,end  scans [first, end) of the pull.
+/// \param guess  first guess; UniformTrajectory::make() must accept it.
 /// \param sigma  noise of one scan, > 0.
+/// \param prior  of ω, γ and stick rate.
+/// \return converged = false if the fit does not settle in 60 iterations, or if the scans do not determine
+/// the parameters.
 [[nodiscard]] UniformFit fit_uniform(const Trace& trace, std::size_t first, std::size_t end,
                                      const model::UniformParameters& guess, double sigma,
                                      const SharedPrior& prior);

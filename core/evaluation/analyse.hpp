@@ -1,5 +1,6 @@
 /// \file
-/// The shipped analysis over a record: the same walk as live, so the same bits.
+/// Analysis of a record's scans. It is that of the live test, so that results are the same to the last bit,
+/// unless the record lacks scans that the live analysis saw (daq::GapCause::kStorageFull).
 #pragma once
 
 #include <filesystem>
@@ -15,17 +16,18 @@
 
 namespace stickslip::evaluation {
 
-/// What the header of a record says of its calibration, as the analysis needs it.
+/// What the header of a record says of its calibration, as the analysis needs it; empty without a load cell.
 [[nodiscard]] pipeline::CalibrationInUse calibration_in_use(const std::optional<daq::LoadCell>& cell,
                                                             const record::CalibrationFacts& facts);
 
-/// Scans come, results go; the record itself need not be in memory.
+/// Analyses the scans of a record piece by piece; the record need not be in memory. Thread-bound.
 class RecordAnalysis {
  public:
   /// \param scratch_folder  where the scans of a long record may lie for the time being; empty: in memory.
-  /// \param prior  what is known of the tester beforehand; empty: what the record says was known.
-  /// \param gaps  what the record says of the jumps of its indices: which of them were counted by nobody.
-  /// Errors: kUsage if the facts do not allow it (no scan rate, no load cell for counts).
+  /// \param prior  of the tester's parameters; empty: the characterisation in the record, if it has one.
+  /// \param gaps  of the record: whether the length of each was counted or estimated.
+  /// Errors: kUsage if the header does not allow it, such as by no scan rate, counts without a load cell, or
+  /// a method, estimator, `kept` or characterisation that cannot be read.
   [[nodiscard]] static base::Result<RecordAnalysis> make(const record::RecordHeader& header,
                                                          const std::filesystem::path& scratch_folder = {},
                                                          const estimate::SharedPrior& prior = {},
@@ -38,7 +40,7 @@ class RecordAnalysis {
   ///        such channel.
   void add(daq::ScanIndex first, std::span<const double> raw, std::span<const std::int32_t> second = {});
 
-  /// Fills in results, cycles and spikes. Call once.
+  /// Fills in results, cycles and spikes; reads `unloaded_level`. Call once.
   /// \param anchors,gaps  of the record, for the scan rate.
   void finish(record::EndRecord& end, std::span<const daq::ClockAnchor> anchors = {},
               std::span<const daq::Gap> gaps = {});
@@ -66,20 +68,21 @@ class RecordAnalysis {
 
 /// Results, cycles and spikes of the record's scans; status, cause and truth stay those of the
 /// record's end, if it has one. Errors as RecordAnalysis::make().
-/// \param scratch_folder  as RecordAnalysis::make(), which tells what may be thrown.
+/// \param scratch_folder  as RecordAnalysis::make(); with one std::system_error may be thrown.
 [[nodiscard]] base::Result<record::EndRecord> analyse(const record::Record& record,
                                                       const std::filesystem::path& scratch_folder = {});
-/// The same, with scans that are not in the record. Throws what reading the scans throws.
+/// As analyse(record), with scans that are not in the record. Throws what reading the scans throws.
 [[nodiscard]] base::Result<record::EndRecord> analyse(const record::Record& record,
                                                       const record::ScanSource& scans,
                                                       const std::filesystem::path& scratch_folder = {});
 
-/// The same, with what the test says about the tester.
+/// Results of a record, with what the test says about the tester.
 struct TesterAnalysis {
-  record::EndRecord end;
-  std::optional<analysis::TesterEstimate> tester;
-  std::optional<analysis::TesterCheck> check;  ///< Only with a prior.
+  record::EndRecord end;                           ///< As analyse().
+  std::optional<analysis::TesterEstimate> tester;  ///< TestAnalysis::tester()
+  std::optional<analysis::TesterCheck> check;      ///< TestAnalysis::tester_check()
 };
+/// \param prior  as RecordAnalysis::make(). Errors and exceptions as analyse().
 [[nodiscard]] base::Result<TesterAnalysis> analyse_with_tester(
     const record::Record& record, const estimate::SharedPrior& prior,
     const std::filesystem::path& scratch_folder = {});

@@ -16,11 +16,11 @@
 /// - each that it has not is, by its 95 % interval and with what the systematic parts could hide, at most a
 ///   tenth of S − K over a decade of speed.
 ///
-/// A sheet with holds or several speeds counts as one test for each of them. Sheets that differ scatter as
-/// such tests do, so that the error of a level found from few sheets is too small.
+/// A sheet with holds or several speeds counts as one test for each of them. These are taken as independent,
+/// though one sheet has one level, so that the error of a level found from few sheets is too small.
 ///
-/// Tests whose speeds differ by at most 1 % have one speed: K is at their mean speed, S at their mean stick
-/// time. A slip after a hold counts with its own stick time, which the belt set.
+/// Tests whose speeds differ by at most 1 % have one speed: K is at their mean speed, S at the geometric mean
+/// of their stick times. A slip after a hold counts with its own stick time, which the belt set.
 ///
 ///     const FrictionLaw found = find_law(tests);
 ///     found.told ? name(found.law) : "cannot be told";
@@ -42,8 +42,8 @@ namespace stickslip::law {
 /// A coefficient as one test gives it.
 struct Value {
   double value = 0.0;
-  double error = 0.0;       ///< > 0
-  double systematic = 0.0;  ///< Moves with those of the other tests; below 0: the other way.
+  double error = 0.0;       ///< Standard error, > 0.
+  double systematic = 0.0;  ///< By how much it is off where all tests are off together; with its sign.
 };
 
 /// One test at one speed, or the slips of one speed or of one hold in a test that changes its speed. At least
@@ -54,11 +54,16 @@ struct LawTest {
   std::optional<Value> S;
   std::optional<Value> K;
   bool held = false;      ///< The belt stood still for the stick time, whatever its speed.
-  std::size_t sheet = 0;  ///< Which sheet: one may count several times, by its rests.
+  std::size_t sheet = 0;  ///< Number of the sheet, which all its tests share.
 };
 
-/// In the order of their scores.
-enum class Law { kConstant, kAgeing, kRate, kAgeingAndRate };
+/// Also the indices of FrictionLaw::scores.
+enum class Law {
+  kConstant,      ///< S and K are constant.
+  kAgeing,        ///< S depends on the stick time.
+  kRate,          ///< K depends on the speed.
+  kAgeingAndRate  ///< Both.
+};
 inline constexpr std::array kLaws{Law::kConstant, Law::kAgeing, Law::kRate, Law::kAgeingAndRate};
 
 /// "constant", "ageing", "rate", "ageing-and-rate".
@@ -73,19 +78,19 @@ inline constexpr std::array kLaws{Law::kConstant, Law::kAgeing, Law::kRate, Law:
 /// How well a law predicts tests that it was not fitted to.
 struct LawScore {
   double score = 0.0;         ///< Mean log density of a left-out test.
-  double behind = 0.0;        ///< Mean of best less this; 0 for the best.
-  double behind_error = 0.0;  ///< Standard error of that mean, over tests.
+  double behind = 0.0;        ///< Score of the best law less this one; 0 for the best.
+  double behind_error = 0.0;  ///< Standard error of `behind`, by its scatter over the tests.
 };
 
 enum class Verdict { kYes, kNo, kCannotTell };
 
-/// S over log₁₀ of the stick time, or K over the speed.
+/// S over log₁₀ of the stick time in s, or K over the speed in m/s.
 struct Dependence {
   std::vector<Point> points;
   std::vector<std::size_t> tests;  ///< Indices among the tests, one for each point.
-  std::optional<Line> constant;
-  std::optional<Line> line;         ///< With the slope: β or μ′.
-  double slope_that_matters = 0.0;  ///< A tenth of S − K over a decade of speed.
+  std::optional<Line> constant;    ///< Absent with fewer than two points.
+  std::optional<Line> line;  ///< With the slope, β or μ′; absent with fewer than three points or one place.
+  double slope_that_matters = 0.0;  ///< As β or μ′: a tenth of S − K over a decade of speed; 0: not known.
   Verdict verdict = Verdict::kCannotTell;
   std::string reason;  ///< Why not, for people; set exactly for kCannotTell.
   /// For kCannotTell: chance alone would not keep it from being told, and the systematic part alone does.
@@ -96,21 +101,25 @@ struct Dependence {
   }
 };
 
-/// Fewest tests with a value for a dependence to be told: a line through all but one leaves one degree of
-/// freedom.
+/// Fewest tests with a value for a dependence to be told: a line through three leaves one degree of freedom.
 inline constexpr std::size_t kFewestTests = 4;
 
 struct FrictionLaw {
-  Law law = Law::kConstant;  ///< Named if `told` and not rate-and-state; else the leading one.
-  bool told = false;
+  /// The smallest law whose score is within a standard error of the best; kConstant without scores. Certain
+  /// if `told`; not the law if is_rate_and_state().
+  Law law = Law::kConstant;
+  bool told = false;  ///< The tests tell the law, by the rules above; true if is_rate_and_state().
   [[nodiscard]] bool is_rate_and_state() const noexcept { return rate_and_state && rate_and_state->is_told; }
-  std::optional<std::array<LawScore, kLaws.size()>> scores;  ///< Absent with fewer than kFewestTests.
-  Dependence ageing;                                         ///< Of S.
-  Dependence rate;                                           ///< Of K.
-  /// Present where there are pulls and holds for it. If `is_told`, it is the law: no line over
-  /// the time at rest alone then describes pulls and holds together.
+  /// Absent unless S or K has kFewestTests values.
+  std::optional<std::array<LawScore, kLaws.size()>> scores;
+  Dependence ageing;  ///< Of S.
+  Dependence rate;    ///< Of K.
+  /// Present where there are pulls and holds for it. If `is_told`, it is the law: no line over the time at
+  /// rest alone then describes pulls and holds together. If not, and not `may_have_none`, no law is told.
   std::optional<RateAndState> rate_and_state;
-  double delta_mu = 0.0;  ///< S − K, by whose tenth a dependence matters; a tenth of K where no test has S.
+  /// Mean S − K, by whose tenth a dependence matters, of the tests with both. A tenth of the largest K where
+  /// none has both or the mean is not positive; 0 without K.
+  double delta_mu = 0.0;
 };
 
 /// "rate-and-state", or the name of found.law.

@@ -1,6 +1,5 @@
 /// \file
-/// The pull speed, or the hold, at which one more test would tell most about what the tests so far cannot
-/// tell.
+/// The pull speed, or the hold, at which one more test would tell most of what the tests so far leave open.
 #pragma once
 
 #include <optional>
@@ -10,33 +9,36 @@
 
 namespace stickslip::law {
 
-/// Speeds of the tester; from < to.
+/// Range of pull speeds from which next_pull() chooses; 0 < from < to.
 struct SpeedRange {
   double from_m_per_s = 0.0;
   double to_m_per_s = 0.0;
 };
 
+/// The pull that would tell most.
 struct NextPull {
   double pull_speed_m_per_s = 0.0;
-  std::optional<double>
-      hold_s;  ///< The belt stands still for so long in that pull; absent: a pull without a hold.
-  bool tells_ageing = false;  ///< Else the rate.
-  /// The smallest dependence that matters, in standard errors of the slope after this pull; 0 where too few
-  /// tests tell the errors.
+  /// The belt stands still for so long in that pull; absent: a pull without a hold.
+  std::optional<double> hold_s;
+  bool tells_ageing = false;  ///< It would tell about S; else about K.
+  /// The smallest slope that matters, in standard errors of the slope after this pull; > 0.
   double separation = 0.0;
 };
 
-/// Longest hold that is asked of a technician.
+/// The hold that is asked for, the longest that a technician will wait.
 inline constexpr double kLongestHold_s = 100.0;
 
-/// A third of the slowest speed of the tests to three times the fastest.
+/// A third of the slowest speed of the tests to three times the fastest. \param tests  at least one.
 [[nodiscard]] SpeedRange usual_range(std::span<const LawTest> tests);
 
-/// About S if it cannot be told and a pull in the range sticks, else about K. Not about what its systematic
-/// part alone keeps from being told. A hold of kLongestHold_s is asked only where
-/// tests have holds.
-/// \param found  of these tests. \param highest_sticking_m_per_s  above it the sled does not stick again, so
-/// that S says nothing; absent: unknown. \return nullopt if no pull in the range would tell more.
+/// The pull that would tell most about S if S cannot be told, else about K if that cannot. What the
+/// systematic part alone keeps from being told is not asked about. A hold of kLongestHold_s is asked for only
+/// where tests have holds.
+/// \param found  of these tests.
+/// \param highest_sticking_m_per_s  above it the sled does not stick again, so that S says nothing; pulls
+/// about S are at most 0.8 of it. Absent: unknown, no limit.
+/// \return nullopt if there is nothing to ask about or no pull in the range would tell it, and where the
+/// tests show a direct effect of rate-and-state friction (!RateAndState::may_have_none).
 [[nodiscard]] std::optional<NextPull> next_pull(const FrictionLaw& found, std::span<const LawTest> tests,
                                                 const SpeedRange& range,
                                                 std::optional<double> highest_sticking_m_per_s);

@@ -25,29 +25,41 @@ namespace stickslip::law {
 
 struct LawTest;
 
+/// Parameters of the law, with what the tests tell of it.
 struct RateAndState {
-  Parameter a;
-  Parameter b;
+  Parameter a;                   ///< Direct effect; of natural logarithms.
+  Parameter b;                   ///< Ageing; of natural logarithms.
   double critical_slip_m = 0.0;  ///< D_c at a and b as found.
-  double within_factor = 0.0;    ///< D_c is known within it: what the closed form leaves open, and a and b.
-  /// a exceeds its 99 % interval and its systematic part, b and b − a exceed their 95 % intervals.
+  /// D_c lies between critical_slip_m over and times this factor, by what the closed form leaves open
+  /// (kCriticalSlipFactor) and the 95 % intervals of b and b − a.
+  double within_factor = 0.0;
+  /// Whether the law is told: a exceeds its 99 % interval, b and b − a exceed their 95 % intervals, each with
+  /// the systematic part of the values, and D_c is finite.
   bool is_told = false;
-  bool may_have_none = true;             ///< a does not exceed its 95 % interval and its systematic part.
-  double between_variance = 0.0;         ///< Between pulls, of S.
-  std::vector<std::optional<double>> S;  ///< Of each test by the law; nullopt where it counts for nothing.
+  /// Whether there may be no direct effect: a does not exceed its 95 % interval with the systematic part of
+  /// the values.
+  bool may_have_none = true;
+  double between_variance = 0.0;  ///< Variance of S between pulls, beyond their own errors.
+  /// S of each test by the law; nullopt for a test that is not used.
+  std::vector<std::optional<double>> S;
 };
 
-/// What the closed form leaves open, by simulated tests: D_c within this factor, as it takes contacts for new
-/// within no way at all and is the exponential of the drop over b; and a within this part of it.
+/// D_c by the closed form is right within this factor, by simulated tests: the form neglects the way on which
+/// contacts become new, and D_c is the exponential of the drop over b.
 inline constexpr double kCriticalSlipFactor = 5.0;
+/// a by the closed form is right within this part of itself, by simulated tests. Its systematic part has it.
 inline constexpr double kDirectEffectPart = 0.3;
 
-/// b by the slopes of S over log₁₀ t within sheets with holds, each of which has a level of its own; b − a by
-/// the slope between the other pulls; a by their difference. S of a hold is its S − K on the K of usual
-/// slips: less (b − a) ln of how much larger its S − K is. Pulls whose time at rest is not long beside the
-/// time of a slip are left out. \param points  S over log₁₀ of the stick time. \param of_tests  index of the
-/// test of each point. \return nullopt without a sheet with holds, without three slow pulls at two speeds, or
-/// without a degree of freedom for b.
+/// Finds b by one slope of S over log₁₀ t within the sheets with holds, each of which has a level of its own;
+/// b − a by the slope between the pulls of other sheets; a by their difference.
+///
+/// A slip after a hold is faster than a usual one, so that its K is lower by (b − a) ln of the ratio of their
+/// S − K; its S, which was taken on the K of usual slips, is less by as much. Pulls that rest for less than
+/// five times the duration of a slip are left out.
+///
+/// \param points  S over log₁₀ of the stick time in s. \param of_tests  index of the test of each point.
+/// \return nullopt without a sheet with holds, without three slow pulls at two speeds, or without a degree of
+/// freedom for b.
 [[nodiscard]] std::optional<RateAndState> rate_and_state(std::span<const LawTest> tests,
                                                          std::span<const Point> points,
                                                          std::span<const std::size_t> of_tests);

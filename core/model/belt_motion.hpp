@@ -27,17 +27,18 @@ class BeltMotion {
   BeltMotion(PullSpeed plan, double start_s);
 
   [[nodiscard]] bool is_constant() const noexcept { return !plan_; }
-  /// One speed throughout, but for the times at which the belt stands still, starts and stops.
+  /// Whether the belt only pulls at one speed, rests, starts and stops, and its starts and stops take at most
+  /// a tenth of the time at that speed before the last point of plan(). True if is_constant().
   [[nodiscard]] bool has_one_speed() const noexcept { return has_one_speed_; }
-  /// The speed, planned or measured. Requires !is_constant().
+  /// The speed, planned or measured, over the time since start_s(). Requires !is_constant().
   [[nodiscard]] const PullSpeed& plan() const noexcept { return *plan_; }
   [[nodiscard]] double start_s() const noexcept { return start_s_; }
 
-  /// Tells the belt that a drift was subtracted from the trace: sticks then rise by r p − drift rate. Has no
-  /// effect on a constant belt, where the fitted r absorbs the drift.
+  /// Tells the belt that a drift was subtracted from the trace: in a stick c then rises at r p − drift rate.
+  /// Has no effect on a constant belt, where the fitted r absorbs the drift.
   void take_off_drift(double rate_per_s) noexcept { drift_rate_per_s_ = rate_per_s; }
 
-  /// p: speed over the plan's largest speed.
+  /// p: speed over the plan's largest speed; 1 on a constant belt, below zero where the carriage returns.
   [[nodiscard]] double relative(double time_s) const noexcept {
     return plan_ ? plan_->speed_m_per_s(time_s - start_s_) * scale_ : 1.0;
   }
@@ -61,24 +62,24 @@ class BeltMotion {
   [[nodiscard]] double climb(double r, double from_s, double duration_s) const noexcept {
     return plan_ ? r * way_s(from_s, duration_s) - drift_rate_per_s_ * duration_s : r * duration_s;
   }
-  /// Inverse of climb(): duration of a stick from from_s in which c rises by `gain`, ≥ 0. Infinity if c never
-  /// does.
+  /// Inverse of climb(): shortest duration, s, of a stick from from_s in which c rises by `gain`, ≥ 0;
+  /// infinity if c never does. \param r  > 0.
   [[nodiscard]] double climbing_time_s(double r, double from_s, double gain) const noexcept;
   /// a/g = r p′/ω₀²: the part of the friction at the onset that accelerates the sled with the belt.
   [[nodiscard]] double acceleration_share(double r, double omega0_squared, double time_s) const noexcept {
     return plan_ ? r * slope(time_s) / omega0_squared : 0.0;
   }
 
-  /// Index of the latest pull of the plan that has begun; 0 with one speed throughout.
+  /// Index of the latest pull of the plan that has begun; 0 before the first, and if is_constant().
   [[nodiscard]] std::size_t pull_of(double time_s) const noexcept;
-  /// End of a pull on the trace's time axis; infinity with one speed throughout.
+  /// End of a pull on the trace's time axis; infinity if it never stops, and if is_constant().
   [[nodiscard]] double pull_end_s(std::size_t pull) const noexcept;
-  /// Start of a pull on the trace's time axis; −infinity for the first.
+  /// Start of a pull on the trace's time axis; −infinity for pull 0.
   [[nodiscard]] double pull_start_s(std::size_t pull) const noexcept;
-  /// When the belt stopped before a pull, if it stood still in between: the sled rested under load. Nullopt
-  /// for the first pull, and where the belt went back.
+  /// Time of the trace at which the belt stopped before a pull, if it has only stood still since: the sled
+  /// rested under load. Nullopt for pull 0, if the belt went back in between, and if is_constant().
   [[nodiscard]] std::optional<double> held_from_s(std::size_t pull) const noexcept;
-  /// Whether the belt stood still between two times of two pulls.
+  /// Whether the two times lie in different pulls, and the belt only stood still right before the later pull.
   [[nodiscard]] bool is_held_between(double before_s, double after_s) const noexcept;
 
  private:
@@ -89,7 +90,7 @@ class BeltMotion {
   double drift_rate_per_s_ = 0.0;
 };
 
-/// One speed throughout.
+/// A constant belt that lives as long as the program.
 [[nodiscard]] const BeltMotion& constant_belt() noexcept;
 
 }  // namespace stickslip::model

@@ -13,29 +13,34 @@ namespace stickslip::model {
 /// root in [t₂, t₃], where c′ rises monotonically. It exists exactly when c′(t₃) ≥ belt rate; this closed
 /// form decides, not the root search.
 /// \param slip  must oscillate.
-/// \param belt_rate_per_s  ω₀² v/g.
+/// \param belt_rate_per_s  ω₀² v/g; any sign.
 /// \return seconds after the onset; nullopt if the sled is not captured.
 [[nodiscard]] std::optional<double> capture_time_s(const SlipWaveform& slip, double belt_rate_per_s) noexcept;
 
 /// Capture time by Halley's steps from the capture time of a slightly different slip.
+/// \param slip  must oscillate.
 /// \param near_s  that capture time, seconds after the onset.
-/// \return nullopt if six steps do not converge within a quarter of an oscillation of near_s.
+/// \return seconds after the onset; nullopt if six steps do not converge within a quarter of an oscillation
+/// of near_s, or if they leave the rise of c′: capture_time_s() must then decide.
 [[nodiscard]] std::optional<double> capture_time_near_s(const SlipWaveform& slip, double belt_rate_per_s,
                                                         double near_s) noexcept;
 
-/// Capture time on a belt whose speed may change: where c′ rises to the belt's rate, between t₂ and the
-/// maximum of c′ − belt rate near t₃; t₂ if c′ is not below the belt's rate there. It exists exactly when
-/// that maximum is not negative. A steady acceleration moves that maximum from t₃ to where c″ equals the
-/// slope of the belt's rate. The maximum is searched within a quarter of an oscillation of t₃; this suffices
-/// while |r p′| < ω |c′|, 100 times the acceleration of a ramp that reaches the threshold speed in a second.
-/// \param r  stick rate at the plan's largest speed; p is BeltMotion::relative().
+/// Capture time on a belt whose speed may change: where c′ rises to the belt's rate, between t₂ and
+/// deciding_time_s(); t₂ if c′ is at or above the belt's rate at t₂ already. It exists exactly when c′ is at
+/// or above the belt's rate at deciding_time_s(). The belt's rate is BeltMotion::stick_rate().
+/// \param slip  must oscillate.
+/// \param r  stick rate at the plan's largest speed, 1/s.
 /// \param onset_s  time of the slip's onset, on the belt's time axis.
 /// \return seconds after the onset; nullopt if the sled is not captured.
 [[nodiscard]] std::optional<double> capture_time_s(const SlipWaveform& slip, const BeltMotion& belt, double r,
                                                    double onset_s) noexcept;
 
 /// Time at which c′ − belt rate has its maximum near t₃, in seconds after the onset: its sign there decides
-/// whether the sled is captured. Equal to t₃ with one speed throughout.
+/// whether the sled is captured. t₃ on a constant belt. On an accelerating belt the maximum lies where c″
+/// equals the slope r p′ of the belt's rate, p being BeltMotion::relative(). It is searched within a quarter
+/// of an oscillation of t₃, which suffices while |r p′| < ω |c′(t₃)|; beyond that the result is t₃. A ramp
+/// that reaches the threshold speed in a second has about a hundredth of that acceleration.
+/// \param slip  must oscillate. The other parameters are those of capture_time_s().
 [[nodiscard]] double deciding_time_s(const SlipWaveform& slip, const BeltMotion& belt, double r,
                                      double onset_s) noexcept;
 

@@ -12,27 +12,33 @@ namespace stickslip::model {
 
 struct InvertedSpeed {
   double Q = 0.0;
-  /// |d ln Q/d ln x| for the feature x; for [17] and [18] about 1 + Q², hence above 4 near the threshold.
+  /// |d ln Q/d ln x| for the feature x. For [17] and [18] it is 1 + Q² without damping and less with it; 4.5
+  /// at the threshold of the paper's tester.
   double condition = 0.0;
 };
 
 // Domain: γ/2ω from 0 to 1. The inverses return nullopt outside, and if no Q in (1e-6, 1e6) has the feature's
-// value. With the speed of a value `near`, whose condition number the answer has too, they take a third of
-// the time.
+// value. `near` is the result for a nearby value. It saves two thirds of the time; the answer may then have
+// the condition number of `near`.
 
-/// \param amplitude_over_belt  A ω/r: half the range of c over r/ω. Falls as Q grows, [17]/Q.
+/// Q from the amplitude [17].
+/// \param amplitude_over_belt  A ω/r: half the range of c over r/ω, equal to amplitude_ratio()/Q. Decreases
+/// as Q grows.
 [[nodiscard]] std::optional<InvertedSpeed> Q_of_amplitude(
     double amplitude_over_belt, double gamma_over_2omega,
     const std::optional<InvertedSpeed>& near = {}) noexcept;
-/// \param ratio  largest slip speed over drive speed [18]; decreases towards a limit below 1 as Q grows. Near
-/// 1 it hardly determines Q: the condition number grows as 1/(1 − ratio).
+/// Q from the slip speed [18].
+/// \param ratio  largest slip speed over drive speed. Decreases as Q grows, towards e^(−(π − 2φ) γ/2ω) ≤ 1
+/// with φ = atan(γ/2ω). Near this limit it hardly determines Q: the condition number grows
+/// as 1/(ratio − limit).
 [[nodiscard]] std::optional<InvertedSpeed> Q_of_slip_speed_ratio(
     double ratio, double gamma_over_2omega, const std::optional<InvertedSpeed>& near = {}) noexcept;
-/// \param period_phase_rad  ω T of a cycle that ends in sticking; decreases as Q grows to the threshold.
+/// Q, below the threshold, from the period.
+/// \param period_phase_rad  ω T of a cycle that ends in sticking; decreases as Q grows.
 [[nodiscard]] std::optional<InvertedSpeed> Q_of_period(double period_phase_rad,
                                                        double gamma_over_2omega) noexcept;
 
-/// Period from onset to onset as a phase, ω T; without damping [3] + [4]. Nullopt above the threshold.
+/// Period from onset to onset as a phase, ω T, rad; without damping [3] + [4]. Nullopt above the threshold.
 /// \param Q > 0, finite.
 [[nodiscard]] std::optional<double> period_phase_rad(double Q, double gamma_over_2omega) noexcept;
 

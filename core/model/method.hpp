@@ -18,7 +18,7 @@ struct Nominal {
   bool operator==(const Nominal&) const = default;
 };
 
-/// Interval of belt travel, counted from the first peak; 0 ≤ from < to.
+/// Interval of belt travel, counted from the first peak of the force; 0 ≤ from < to.
 struct TravelWindow {
   double from_m = 0.0;
   double to_m = 0.0;
@@ -26,8 +26,8 @@ struct TravelWindow {
   bool operator==(const TravelWindow&) const = default;
 };
 
-/// Defaults: "the first peak as the static COF, and the average of about the next 10 cycles as the
-/// kinetic COF" [Penner 1995, Experimental].
+/// A test method. Defaults: "the first peak as the static COF, and the average of about the next 10 cycles as
+/// the kinetic COF" [Penner 1995, Experimental].
 struct Method {
   std::string name = "penner-1995";
   int static_slip = 1;      ///< The slip whose peak is the static coefficient, from 1.
@@ -44,8 +44,9 @@ struct Method {
   bool operator==(const Method&) const = default;
 };
 
-/// Departures of a test from its method, one line each, such as "pull speed 304.8 mm/min, iso-8295 asks
-/// 100 ± 10 mm/min". Unknown values are not compared.
+/// Departures of a test from its method in sled mass and pull speed, one line each, such as "pull speed 304.8
+/// mm/min, iso-8295 asks 100 ± 10 mm/min"; empty if there are none. A quantity that the test does not know,
+/// or for which the method has no value or no tolerance, is not compared.
 /// \param sled_mass_kg,pull_speed_m_per_s  of the test; nullopt if unknown.
 [[nodiscard]] std::vector<std::string> departures(const Method& method, std::optional<double> sled_mass_kg,
                                                   std::optional<double> pull_speed_m_per_s);

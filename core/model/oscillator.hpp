@@ -11,12 +11,12 @@
 
 namespace stickslip::model {
 
-/// C(ω², t) = cos ωt, cosh for ω² < 0.
+/// C(ω², t) = cos ωt, cosh κt for ω² = −κ² < 0.
 /// \param omega_squared  rad²/s², any sign, finite.
 /// \param t_s            finite; for ω² < 0 the result overflows to infinity past |ωt| ≈ 710.
 [[nodiscard]] double entire_cosine(double omega_squared, double t_s) noexcept;
 
-/// Sn(ω², t) = sin(ωt)/ω in seconds, sinh(κt)/κ for ω² = −κ² < 0, t for ω² = 0. Domain as above.
+/// Sn(ω², t) = sin(ωt)/ω in seconds, sinh(κt)/κ for ω² = −κ² < 0, t for ω² = 0. Domain as entire_cosine().
 [[nodiscard]] double entire_sine(double omega_squared, double t_s) noexcept;
 
 /// Oscillator of sled and coupling; its parameters belong to the tester, not to the paper.
@@ -55,8 +55,8 @@ struct DampedBasis {
   double sine;    ///< e^(−γt/2) Sn(ω², t), s
 };
 
-/// \param t_s ≥ 0; any where it oscillates. Never overflows: the growth of cosh is taken out of the decay
-/// first.
+/// The basis at t_s. For t_s ≥ 0 it does not overflow, however strong the damping.
+/// \param t_s  ≥ 0; also negative if the oscillator oscillates.
 [[nodiscard]] DampedBasis damped_basis(const Oscillator& oscillator, double t_s) noexcept;
 
 }  // namespace stickslip::model

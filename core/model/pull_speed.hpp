@@ -38,9 +38,10 @@ class PullSpeed {
 
   /// \param points  the first at 0 s, times not falling; two points at one time are a jump. The belt is at
   ///        rest before the first point and keeps the speed of the last.
-  /// \return nullopt unless all values are finite, there are at most kMostPoints, and v > 0 at some time.
+  /// \return nullopt if the points are not so, if there are more than kMostPoints, if a value is not finite,
+  ///         or if v > 0 at no time.
   [[nodiscard]] static std::optional<PullSpeed> make(std::vector<SpeedPoint> points);
-  /// Reads the form that text() writes. \return nullopt if `text` is malformed.
+  /// Reads the form that text() writes. \return nullopt if `text` is malformed, or make() refuses its points.
   [[nodiscard]] static std::optional<PullSpeed> parse(std::string_view text);
   /// "0:0.0023 4.5:0.0113", s and m/s; parse() restores each number to the last bit.
   [[nodiscard]] std::string text() const;
@@ -50,7 +51,7 @@ class PullSpeed {
   [[nodiscard]] double acceleration_m_per_s2(double t_s) const noexcept;
   /// ∫v from the start, m; 0 before it.
   [[nodiscard]] double travel_m(double t_s) const noexcept;
-  /// End of the linear piece that contains t_s; infinity after the last point.
+  /// End of the linear piece that contains t_s; 0 before the start, infinity after the last point.
   [[nodiscard]] double steady_until_s(double t_s) const noexcept;
 
   /// > 0

@@ -1,7 +1,6 @@
 /// \file
 /// The force around one slip as a function of six parameters, with analytic derivatives: stick,
-/// slip, and — if the slip ends in sticking — stick again. The one trajectory of all fits.
-/// [Penner 1995, (11)–(14)]
+/// slip, and — if the slip ends in sticking — stick again. [Penner 1995, (11)–(14)]
 #pragma once
 
 #include <optional>
@@ -27,7 +26,7 @@ struct SharedParameters {
 
 /// Parameters of one slip.
 struct SlipParameters {
-  double onset_s = 0.0;  ///< Time of the slip onset.
+  double onset_s = 0.0;  ///< Time of the slip onset, on the trace's time axis.
   double S = 0.0;        ///< Coefficient at the onset; S of the paper less a/g of an accelerating belt.
   double K = 0.0;        ///< Kinetic coefficient during the slip.
 };
@@ -45,23 +44,25 @@ struct SlipModelPoint {
 
 enum class SlipPhase { kBefore, kSlip, kAfter };  ///< Stick, slip, stick again.
 
-/// One time of a trajectory: its value, and of what its derivatives are linear combinations, with
-/// coefficients that are the same for all times of a phase.
+/// A trajectory at one time: its phase, its value, and the terms of which its derivatives are linear
+/// combinations. The coefficients of these are the same at all times of a phase:
+/// SlipModel::slip_coefficients(), SlipModel::stick_begin().
 struct SlipPlace {
   SlipPhase phase = SlipPhase::kBefore;
   double value = 0.0;
-  double way_s = 0.0;           ///< Of a stick: BeltMotion::way_s() from the onset or the capture.
-  double tau_s = 0.0;           ///< Of the slip: time since the onset,
-  DampedBasis basis{1.0, 0.0};  ///< and the basis at it.
+  double way_s = 0.0;           ///< In a stick: BeltMotion::way_s() since the onset (≤ 0) or the capture.
+  double tau_s = 0.0;           ///< In the slip: time since the onset.
+  DampedBasis basis{1.0, 0.0};  ///< In the slip: the basis at tau_s.
 };
 
 /// One slip with fixed parameters, ready to be evaluated at many times.
 class SlipModel {
  public:
-  /// \param captured  the sled sticks again where c′ equals the stick rate (at t₃ if c′ does not reach it);
-  ///        otherwise the oscillation never ends.
+  /// \param captured  if true, the sled sticks again where c′ reaches the belt's rate, or at
+  ///        deciding_time_s() if it does not; if false, the oscillation never ends.
   /// \param belt  must outlive this object.
-  /// \param expected_capture_s  capture_s() of a slightly different slip: saves most of the search.
+  /// \param expected_capture_s  capture_s() of a slightly different slip: on a constant belt it saves most of
+  ///        the search.
   SlipModel(const SharedParameters& shared, const SlipParameters& slip, bool captured,
             const BeltMotion& belt = constant_belt(), std::optional<double> expected_capture_s = {}) noexcept;
 
@@ -69,8 +70,8 @@ class SlipModel {
     return point_at(
         place_at(time_s, [this](double tau_s) { return damped_basis(waveform_.oscillator, tau_s); }));
   }
-  /// The value alone, and what the derivatives are made of: for sums over many times in a row.
-  /// \param basis  of the same ω and γ.
+  /// The value, and the terms of the derivatives: for sums over many times in rising order.
+  /// \param basis  made from waveform().oscillator.
   [[nodiscard]] SlipPlace place(double time_s, TurnedBasis& basis) const noexcept {
     return place_at(time_s, [&basis](double tau_s) { return basis.at(tau_s); });
   }
@@ -86,7 +87,8 @@ class SlipModel {
   [[nodiscard]] static Eigen::Matrix<double, 5, 1> slip_terms(const SlipPlace& at) noexcept {
     return {1.0, at.basis.cosine, at.basis.sine, at.tau_s * at.basis.cosine, at.tau_s * at.basis.sine};
   }
-  /// ∂/∂(onset, S, K, ω, γ, r) of a stick is this vector, and by r way_s more.
+  /// ∂/∂(onset, S, K, ω, γ, r) of a stick is this vector, with way_s added to the derivative by r.
+  /// \param phase  kBefore or kAfter.
   [[nodiscard]] const SlipModelPoint::Derivatives& stick_begin(SlipPhase phase) const noexcept {
     return phase == SlipPhase::kBefore ? before_ : after_;
   }

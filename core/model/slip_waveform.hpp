@@ -12,7 +12,8 @@
 
 namespace stickslip::model {
 
-/// c″ + γ c′ + ω₀² (c − K) = 0 from c(0) = K + D, c′(0) = r. Times are seconds after the onset, ≥ 0.
+/// The coefficient during one slip: the solution of c″ + γ c′ + ω₀² (c − K) = 0 from c(0) = K + D, c′(0) = r.
+/// Times are seconds after the onset, ≥ 0.
 struct SlipWaveform {
   double K = 0.0;  ///< Kinetic coefficient.
   double D = 0.0;  ///< c(0) − K; S − K if the slip starts from sticking [13].
@@ -42,10 +43,10 @@ struct SlipWaveform {
   [[nodiscard]] double peak_time_s() const noexcept;
   /// t₂ = t₁ + (π/2 − φ)/ω [16]: fastest slip, least c′.
   [[nodiscard]] double fastest_slip_time_s() const noexcept;
-  /// t₃ = t₂ + π/ω [20]: end of the rise of c′. Capture happens in [t₂, t₃] or not at all; it happens exactly
-  /// when rate(t₃) ≥ the rate of the belt.
+  /// t₃ = t₂ + π/ω [20]: end of the rise of c′. On a belt of constant speed capture happens in [t₂, t₃] or
+  /// not at all; it happens exactly when rate(t₃) ≥ the rate of the belt.
   [[nodiscard]] double rise_end_time_s() const noexcept;
-  /// t₁ + π/ω: minimum of the force. For r > 0 capture cannot come before it.
+  /// t₁ + π/ω: minimum of the force. Capture by a belt that moves forward comes later.
   [[nodiscard]] double trough_time_s() const noexcept;
 };
 

@@ -13,7 +13,7 @@
 
 namespace stickslip::model {
 
-/// Largest γ/2ω whose threshold is representable as a double.
+/// Largest accepted γ/2ω; Q_th is 1e-135 there.
 inline constexpr double kLargestGammaOver2Omega = 100.0;
 
 /// Q_th [22].
@@ -24,12 +24,15 @@ inline constexpr double kLargestGammaOver2Omega = 100.0;
 /// θ at the threshold [9], rad; π/2 without damping. Domain as Q_threshold().
 [[nodiscard]] double theta_threshold_rad(double gamma_over_2omega) noexcept;
 
-/// v_th = Q_th ω g D/ω₀². \param oscillator oscillates. \param delta_mu S − K ≥ 0.
+/// Threshold speed v_th = Q_th ω g (S − K)/ω₀², m/s.
+/// \param oscillator  underdamped.
+/// \param delta_mu  S − K ≥ 0.
 /// \param gravity_m_per_s2 > 0.
+/// \return infinity without damping, but NaN if S − K is 0, too; NaN if γ/2ω > kLargestGammaOver2Omega.
 [[nodiscard]] double threshold_speed_m_per_s(const Oscillator& oscillator, double delta_mu,
                                              double gravity_m_per_s2) noexcept;
 
-/// S − K from a measured threshold speed: inverse of threshold_speed_m_per_s().
+/// S − K from a measured threshold speed: inverse of threshold_speed_m_per_s(). 0 without damping.
 [[nodiscard]] double delta_mu_of_threshold_speed(const Oscillator& oscillator, double threshold_speed_m_per_s,
                                                  double gravity_m_per_s2) noexcept;
 

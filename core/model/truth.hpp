@@ -28,16 +28,16 @@ enum class Mode { kStick, kSlip, kSlack };
   return "stick";
 }
 
-/// Interval of time spent in one mode; seconds after the first scan of the record.
+/// Interval of time spent in one mode. Seconds after the first scan of the record, by its granted scan rate.
 struct ModeInterval {
   double start_s = 0.0;
   double end_s = 0.0;
   Mode mode = Mode::kStick;
 };
 
-/// True S and K of one slip.
+/// True S and K of one slip that began from sticking.
 struct TrueCycle {
-  double onset_time_s = 0.0;  ///< Seconds after the first scan of the record.
+  double onset_time_s = 0.0;  ///< Seconds after the first scan of the record, by its granted scan rate.
   double mu_s = 0.0;
   double mu_k = 0.0;
 };
@@ -47,7 +47,7 @@ struct SolverFacts {
   std::string method;                     ///< For people.
   double accuracy = 0.0;                  ///< Expected largest error of the coefficient.
   double accuracy_asked = 0.0;            ///< Accuracy that the scene asked for, in the same unit.
-  std::optional<double> time_per_scan_s;  ///< Of computing; nullopt if not measured.
+  std::optional<double> time_per_scan_s;  ///< Computing time; nullopt if not measured.
 
   bool operator==(const SolverFacts&) const = default;
 };
@@ -56,18 +56,23 @@ struct TestTruth {
   std::string scene_name;
   std::string scene_text;  ///< Complete text of the scene file.
   std::uint64_t seed = 0;
-  /// Mean over the slips of the pull, where there are more without the first and those after a hold; of
-  /// contacts that scatter that of the paper.
+  /// S: mean over the slips of the pull without the first and those after a rest of the belt; that of the
+  /// first if there is no other. The S of the scene if there is no slip, or if S and K only scatter about it.
   double mu_s = 0.0;
-  double mu_k = 0.0;  ///< The same, at the speed of the belt.
+  double mu_k = 0.0;  ///< K: averaged as mu_s; of sliding at the speed of the belt.
   double omega_rad_per_s = 0.0;
   double gamma_over_2omega = 0.0;
+  /// At the first onset. Without a slip the nominal speed; 0 if that changes, and without a pull.
   double pull_speed_m_per_s = 0.0;
   Regime regime = Regime::kUndecided;
-  std::optional<double> static_coefficient;        ///< Traditional result from the noise-free force;
-  std::optional<double> kinetic_coefficient;       ///< nullopt for both if the pull is too short.
-  std::optional<double> oscillation_frequency_Hz;  ///< Nullopt if there is no oscillation.
-  std::optional<double> amplitude;                 ///< Half the range of the first full cycle.
+  /// Traditional coefficients of the noise-free force. Each is nullopt if the pull is too short for it; both
+  /// without a slip.
+  std::optional<double> static_coefficient;
+  std::optional<double> kinetic_coefficient;
+  /// By true time, not by the granted scan rate. Nullopt unless there are two slips, or one that rings down.
+  std::optional<double> oscillation_frequency_Hz;
+  /// Half the range of the coefficient in the first slip; nullopt without a slip.
+  std::optional<double> amplitude;
   base::LongColumn<ModeInterval> modes;
   base::LongColumn<TrueCycle> cycles;
   std::optional<SolverFacts> solver;  ///< Nullopt in records of versions that did not write it.
@@ -85,12 +90,12 @@ class TrueForce {
   virtual void next(base::ScanIndex first, std::span<double> coefficient) = 0;
 };
 
-/// Thread-safe: may be asked from any thread at any time.
+/// Source of the truth about the scans of a board. Thread-safe: may be asked from any thread at any time.
 class TruthSource {
  public:
   virtual ~TruthSource() = default;
 
-  /// The truth about scans [first, end), with times relative to `first`; nullopt if unknown.
+  /// The truth about scans [first, end), with times in seconds after `first`; nullopt if unknown.
   [[nodiscard]] virtual std::optional<TestTruth> truth(base::ScanIndex first, base::ScanIndex end) const = 0;
 
   /// The noise-free force from scan `first` on; null if unknown.

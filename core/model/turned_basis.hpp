@@ -13,9 +13,9 @@
 
 namespace stickslip::model {
 
-/// Learns the step of the times: a time that continues with the step before takes four multiplications; any
-/// other is computed by damped_basis(). Each turn adds two errors: rounding, a few ε, and the difference of
-/// the step from the learned one, at most kSameStep of it.
+/// damped_basis() at one time after another. A time that follows by the same step as the time before is
+/// turned from that, by a few multiplications; any other is computed by damped_basis(). Each turn adds two
+/// errors: rounding, a few ε, and the phase of the steps' difference, at most 1e-6 of a step.
 class TurnedBasis {
  public:
   /// \param oscillator  must oscillate.

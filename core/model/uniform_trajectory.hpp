@@ -4,7 +4,7 @@
 ///
 ///     if (const auto course = UniformTrajectory::make({shared, {onset_s, S, K}})) {
 ///       const UniformPoint point = course->at(time_s);
-///
+///     }
 #pragma once
 
 #include <optional>
@@ -39,31 +39,32 @@ struct UniformParameters {
 /// Value and derivatives at one time.
 struct UniformPoint {
   double value = 0.0;
+  /// By onset, S, K, ω, γ, r.
   UniformParameters::Vector by = UniformParameters::Vector::Zero();
 };
 
 /// Periodic trajectory with derivatives by its six parameters.
 class UniformTrajectory {
  public:
-  /// \return nullopt unless the oscillator oscillates, S > K, r > 0 and the sled is captured.
+  /// \return nullopt unless onset and ω are finite, ω > 0, |γ| < 2ω, S > K, r > 0, and the sled is captured.
   [[nodiscard]] static std::optional<UniformTrajectory> make(const UniformParameters& parameters);
 
-  /// Force at any time; before the first onset the sled sticks.
+  /// Coefficient at any time; before the first onset the sled sticks.
   [[nodiscard]] UniformPoint at(double time_s) const noexcept;
 
   /// The first cycle, which all repeat.
   [[nodiscard]] const SlipModel& slip() const noexcept { return slip_; }
-  /// From a capture to the next; the first begins before its onset.
+  /// From a capture to the next; cycle 0 contains all times before its capture.
   struct Cycle {
-    double number = 0.0;
-    double after_first_s = 0.0;
-    double end_s = 0.0;
+    double number = 0.0;         ///< From 0.
+    double after_first_s = 0.0;  ///< Time by which it follows cycle 0.
+    double end_s = 0.0;          ///< Time of its capture; after the time asked for.
   };
   [[nodiscard]] Cycle cycle_at(double time_s) const noexcept;
 
-  /// From onset to onset: ω t_slip plus the stick that brings c from the capture back to S.
+  /// From onset to onset: the slip, and the stick that brings c from the capture back to S.
   [[nodiscard]] double period_s() const noexcept { return period_s_; }
-  /// ∂ period/∂ parameters. The shift of the capture time has no effect on it, since c′ = r there.
+  /// ∂ period/∂(onset, S, K, ω, γ, r). The shift of the capture time has no effect on it, since c′ = r there.
   [[nodiscard]] const UniformParameters::Vector& period_slope() const noexcept { return period_by_; }
 
  private:

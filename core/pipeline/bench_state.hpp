@@ -29,7 +29,7 @@ inline constexpr std::size_t kBenchStates = 6;
   return state == BenchState::kIdle || state == BenchState::kArmed;
 }
 
-/// Condition that prevents further tests; reported from its detection until the state changes.
+/// Why the bench stays in a state; reported from its detection until the state changes.
 enum class BenchTrouble {
   kNone,
   kLongFinishing,  ///< For longer than a carriage takes to go back.
@@ -99,7 +99,7 @@ struct BenchStep {
 /// \param automatic  the bench arms itself after a test, and when scans arrive.
 [[nodiscard]] BenchStep step(BenchState state, BenchEvent event, bool automatic) noexcept;
 
-/// Thread-bound.
+/// State of a bench, degraded at first. Thread-bound.
 class BenchMachine {
  public:
   explicit BenchMachine(bool automatic) noexcept : automatic_(automatic) {}

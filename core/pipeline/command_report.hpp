@@ -10,6 +10,7 @@
 
 namespace stickslip::pipeline {
 
+/// Outcome of a command.
 struct CommandReport {
   std::string refusal;                       ///< Reason for a refusal, for the user; empty: done.
   BenchState state = BenchState::kDegraded;  ///< State after the command.
@@ -17,8 +18,9 @@ struct CommandReport {
   base::ScanIndex scan = 0;  ///< First scan affected; of a stop the last of the test, of a mark the latest.
 };
 
+/// Outcome of a tare. If it was refused, its numbers mean nothing.
 struct TareReport : CommandReport {
-  double zero_V = 0.0;                 ///< The new one.
+  double zero_V = 0.0;                 ///< New zero of the load cell.
   double zero_standard_error_V = 0.0;  ///< From the scatter of the scans.
   double moved_N = 0.0;                ///< Decrease of all forces from this scan on, N.
   std::size_t scan_count = 0;          ///< Scans used.

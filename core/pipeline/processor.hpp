@@ -1,14 +1,14 @@
 /// \file
-/// The walk of a scan after the ring: gaps noted, calibrated, cut into tests, analysed, handed to
-/// the sinks.
+/// Processor: takes blocks of scans from the ring buffer, notes gaps, calibrates the scans, cuts them into
+/// tests, analyses each test, and hands all of it to the sinks.
 ///
 ///     Processor processor{settings, calibration, {&table, &record}};
 ///     while (ring.pop(&block, 1)) processor.process(block, daq::GapCause::kUnknown);
 ///     processor.finish(EndCause::kStopped);
 ///
-/// What the analysis of a test gets is exactly what its record holds: the scans from the first
-/// pre-trigger scan to the end, and the gaps between them. So a record that is analysed again gives
-/// the same results to the last bit.
+/// The analysis of a test gets the scans that the sinks get, from the first pre-trigger scan to the end, and
+/// the gaps between them. So a record that is analysed again gives the same results to the last bit, unless
+/// its storage lost scans (daq::GapCause::kStorageFull).
 #pragma once
 
 #include <array>
@@ -44,12 +44,14 @@ struct ProcessorSettings {
   analysis::AnalysisSettings analysis;
   std::int64_t first_test_number = 1;
   bool automatic = true;  ///< The bench arms itself: the force begins each test.
-  /// Where the acquisition before this one ended; absent for the first.
+  /// One past the last scan of the acquisition before this one: the first block may then follow a gap.
+  /// Nullopt for the first acquisition.
   std::optional<daq::ScanIndex> continues_at;
-  /// Of a replayed record: takes the place of the blocks' stamps and of what is said about gaps.
+  /// Facts of the record that is replayed; null for a bench. They replace clock anchors, read latency,
+  /// self-check, unloaded level and the causes of gaps, and the commands of its notes are carried out again.
   std::shared_ptr<const daq::RecordedFacts> recorded;
-  std::optional<daq::SecondChannel> second;  ///< That of the board.
-  /// The stamps are of the machine's own clock, so that they can measure the scan rate.
+  std::optional<daq::SecondChannel> second;  ///< Second channel of the board; nullopt if there is none.
+  /// Whether the stamps are of the machine's own clock, so that they can measure the scan rate.
   bool clock_is_real = true;
   CalibrationInUse calibration = {};
 };
@@ -60,37 +62,45 @@ class Processor {
   /// \param sinks  called in this order; they outlive the processor.
   Processor(const ProcessorSettings& settings, daq::Calibration calibration, std::vector<Sink*> sinks);
 
-  /// Blocks in the order of their indices.
-  /// \param gap_cause  what to blame if there is a jump before this block.
-  /// \param halted  the board had halted before this block: a jump is an estimate.
+  /// Takes the next block, in the order of the indices.
+  /// \param gap_cause  cause of the gap, if the index jumps before this block.
+  /// \param halted  the board had halted before this block: the size of a gap is then an estimate.
   void process(const daq::ScanBlock& block, daq::GapCause gap_cause, bool halted = false);
 
-  /// No more blocks: ends the running test, if any.
+  /// To be called after the last block: ends a running test with the latest scan; the bench is then degraded.
   void finish(EndCause cause);
-  /// After finish(): so many scans came after the latest block and were lost on the way here; 0 is allowed.
+  /// To be called after finish(): `count` scans, ≥ 0, came after the latest block and were lost on the way
+  /// here. Tells the sinks a gap between tests of cause kRingFull.
   void lost_at_end(std::int64_t count);
 
-  // Commands, in processor_commands.cpp; between two blocks.
+  // Commands, in processor_commands.cpp; between two blocks. One that is refused changes nothing; its report
+  // says why. `who` is the name of the user.
 
-  /// The next rise of the force begins a test.
+  /// Arms the bench: the next rise of the force begins a test.
   [[nodiscard]] CommandReport arm(const std::string& who);
-  /// A test begins with the next scan.
+  /// Begins a test with the next scan.
   [[nodiscard]] CommandReport start(const std::string& who);
-  /// The latest scan was the last of the running test; or the armed bench is idle.
+  /// Ends the running test with the latest scan; without a test, disarms the armed bench.
   [[nodiscard]] CommandReport stop(const std::string& who);
-  /// A remark at the latest scan of the running test.
+  /// Adds a remark at the latest scan of the running test; refused without one.
   [[nodiscard]] CommandReport mark(const std::string& text);
-  /// What the load cell shows now is its zero from here on.
+  /// Sets the zero of the load cell from the next scan on, so that the mean force of the unloaded scans
+  /// before (up to IdleScans::kKept_s) is zero. Ends BenchState::kFinishing. Refused during a test, without
+  /// scans from the board, without readings in volts or counts, with too few unloaded scans, with the
+  /// converter at a rail, and if that mean is a load: as a coefficient, the larger of
+  /// SegmenterSettings::start_coefficient and UnloadedLevel::kFarthest or more.
   [[nodiscard]] TareReport tare(const std::string& who);
-  /// Scans are calibrated so from the next one on. Only on an idle bench, whose next test begins after all of
-  /// this. \param calibration  of the same board. \param in_use  as in the settings.
+  /// Replaces the calibration from the next scan on. Refused unless the bench is idle. Scans kept for the
+  /// next test are dropped: its record begins after this call.
+  /// \param calibration  of the same board.
+  /// \param in_use  as ProcessorSettings::calibration.
   [[nodiscard]] CommandReport recalibrate(daq::Calibration calibration, const CalibrationInUse& in_use,
                                           const std::string& who);
-  /// Of the tests that begin from here on.
+  /// Sets the nominal pull speed of the tests that begin from here on; nullopt: unknown.
   void plan_pull_speed(std::optional<double> speed_m_per_s) {
     settings_.analysis.tester.pull_speed_m_per_s = speed_m_per_s;
   }
-  /// Of the tests that begin from here on.
+  /// Sets the method of the tests that begin from here on.
   void plan_method(const model::Method& method) { settings_.analysis.method = method; }
 
   [[nodiscard]] BenchState bench() const noexcept { return bench_.state(); }
@@ -99,14 +109,14 @@ class Processor {
   [[nodiscard]] bool test_is_running() const noexcept { return analysis_.has_value(); }
   /// Number of the running test, else of the next one.
   [[nodiscard]] std::int64_t test_number() const noexcept { return number_; }
-  /// Phase and regime of the moment; idle between tests.
+  /// Present state of the running test; idle between tests.
   [[nodiscard]] detect::LiveState live() const { return analysis_ ? analysis_->live() : detect::LiveState{}; }
   [[nodiscard]] std::uint64_t scan_count() const noexcept { return scan_count_; }
   [[nodiscard]] std::uint64_t gap_count() const noexcept { return gap_count_; }
   [[nodiscard]] std::int64_t lost_scan_count() const noexcept { return lost_scan_count_; }
-  /// Scans that no test wanted.
+  /// Scans that belong to no test; those that the next test may still take are not counted yet.
   [[nodiscard]] std::int64_t idle_scan_count() const noexcept { return idle_scan_count_; }
-  /// The true scan rate of all scans so far, and where the index is.
+  /// Meter of the true scan rate, over all scans so far.
   [[nodiscard]] const daq::RateMeter& rate_meter() const noexcept { return meter_; }
 
  private:

@@ -9,8 +9,8 @@
 /// the force lies flat (the belt has stopped with the coupling stretched).
 /// Trigger and end threshold are relative to the level of the unloaded cell, which quiet scans give
 /// (unloaded_level.hpp). Before a test each quiet force up to UnloadedLevel::kFarthest is that level; during
-/// and after a test only one below a third of the largest force. The level is 0 until it is known; until the
-/// force has been below the trigger, only a force above kFarthest begins a test.
+/// and after a test only one that is also at most a third of the largest force. The level is 0 until it is
+/// known; until then a test begins only at kFarthest or more if no pre-trigger scan is below the trigger.
 ///
 /// An oscillation that decays into a flat force does not end a test: the sled slides steadily, and the force
 /// does not show whether the belt still moves.
@@ -35,16 +35,18 @@ struct SegmenterSettings {
   double scan_rate_Hz = 350.0;
   double step_coefficient = 0.0;    ///< One A/D step; 0 if unknown.
   double start_coefficient = 0.05;  ///< Trigger, above the unloaded level.
-  double start_dwell_s = 0.010;     ///< Time above the trigger that begins a test.
-  double end_coefficient = 0.02;    ///< End threshold; < start_coefficient (hysteresis).
-  double unload_dwell_s = 0.25;    ///< Time below it that ends a test; must exceed the slack part of a cycle.
-  double no_motion_dwell_s = 0.5;  ///< Time of flat force that ends a test, at least four periods.
-  double pre_trigger_s = 0.25;     ///< Part of the record before the trigger.
+  double start_dwell_s = 0.010;     ///< Time above the trigger that begins a test; at least two scans count.
+  double end_coefficient = 0.02;    ///< End threshold, above the unloaded level; < start_coefficient.
+  /// Time below the end threshold that ends a test; must exceed the slack part of a cycle.
+  double unload_dwell_s = 0.25;
+  double no_motion_dwell_s = 0.5;  ///< Time of flat force that ends a test; four periods if they are longer.
+  double pre_trigger_s = 0.25;     ///< Part of the record before the trigger scan.
 
-  /// Unloaded level at the first scan, if a record gives it; holds until the first test begins.
+  /// Unloaded level at the first scan, if a record gives it; holds until the first test begins. Ignored
+  /// beyond UnloadedLevel::kFarthest.
   std::optional<double> unloaded_level = {};
 
-  /// Scans from before the trigger that belong to the record.
+  /// Number of scans before the trigger scan that belong to the record.
   [[nodiscard]] std::size_t pre_trigger_scans() const noexcept;
 };
 
@@ -54,17 +56,17 @@ class Segmenter {
  public:
   enum class Event {
     kNone,
-    kTestStarts,
-    kUnloaded,
-    kNoRelativeMotion,
-    kPulledAgain,  ///< Rose again before unloading was detected; begins no test. Once a test.
+    kTestStarts,        ///< A test begins; this is its trigger scan.
+    kUnloaded,          ///< Last scan of a test: the force is near the unloaded level again.
+    kNoRelativeMotion,  ///< Last scan of a test: the belt has stopped.
+    kPulledAgain,       ///< Rose again before unloading was detected; begins no test. Once a test.
     /// As far below the unloaded level as a test begins above it, for the unload dwell: the force has the
     /// wrong sign. Once for each such stretch, but for the first after a test: there the carriage may push
     /// the sled back.
     kNegative,
   };
 
-  /// \throws std::invalid_argument unless rate and dwells are positive and
+  /// \throws std::invalid_argument unless rate and dwells are positive, pre_trigger_s ≥ 0 and
   ///         0 ≤ end_coefficient < start_coefficient.
   explicit Segmenter(const SegmenterSettings& settings);
 
@@ -75,13 +77,13 @@ class Segmenter {
   /// are then discarded: a replay, which does not know the time of this call, would have begun the test
   /// there.
   [[nodiscard]] bool arm();
-  /// Begins a test with the next scan, whatever its force; only while ready(). Unloading ends this test only
-  /// after the force has stayed above the trigger.
+  /// Begins a test with the next scan, whatever its force; no effect unless ready(). Unloading ends this test
+  /// only after the force has stayed above the trigger.
   void start() noexcept;
   /// Ends the running test with the latest scan, or cancels a pending start().
   void stop() noexcept;
 
-  /// \param index rises; a jump discards the pre-trigger scans.
+  /// Takes the next scan. \param index rises; a jump discards the pre-trigger scans.
   [[nodiscard]] Event observe(base::ScanIndex index, double coefficient);
 
   /// Whether a test can begin. False during a test, and until the force of the last one has returned to the
@@ -91,17 +93,19 @@ class Segmenter {
   /// A test has started and not ended.
   [[nodiscard]] bool running() const noexcept { return state_ == State::kRunning; }
 
-  /// Present level of the unloaded cell, from quiet scans; nullopt before the first.
+  /// Present level of the unloaded cell, from quiet scans or the settings; 0 after a tare, nullopt if
+  /// unknown.
   [[nodiscard]] std::optional<double> unloaded_level() const noexcept { return level_; }
-  /// Level at the end of the latest test; nullopt unless it ended with kUnloaded and a quiet force.
+  /// Unloaded level at the end of the latest test; nullopt while a test runs, and unless the test ended with
+  /// kUnloaded and a quiet force.
   [[nodiscard]] std::optional<double> level_after() const noexcept { return level_after_; }
-  /// Coefficient at and above which a test begins.
+  /// Coefficient at and above which a force begins a test.
   [[nodiscard]] double trigger() const noexcept;
   /// Whether the latest scans are quiet, at any force.
   [[nodiscard]] bool quiet() const noexcept { return quiet_scans_.quiet(); }
   /// Adopts a new zero after a tare; ready() holds afterwards. Not while a test runs.
-  /// \param kept  coefficients observed since ready(), recomputed with the new zero.
-  /// \return as arm().
+  /// \param kept  the pre-trigger scans, as coefficients with the new zero.
+  /// \return true if one of them was at the trigger; all are then discarded, as by arm().
   [[nodiscard]] bool tared(std::span<const double> kept);
 
  private:

@@ -18,31 +18,32 @@
 
 namespace stickslip::pipeline {
 
-/// Least squares of the forces, spikes replaced, by a straight line with sine and cosine of 50 and of 60 Hz.
-/// Depends on its arguments only, so that a record gives the same result to the last bit.
+/// Checks unloaded scans: fits a straight line with sine and cosine of 50 and of 60 Hz to the forces, spikes
+/// replaced, by least squares. Depends on its arguments only: a record gives the same bits again.
 /// \param raw  consecutive scans from `first` on. With fewer than kFewestIdleScans, or less than
-///        kShortestIdle_s, noise, hum and drift are absent; hum is absent too if the scan rate cannot resolve
-///        60 Hz.
-/// \param rate  measured over all scans so far, if known.
+///        kShortestIdle_s, only the saturated scans are counted. Hum is absent, too, if the scan rate cannot
+///        resolve 60 Hz (analysis::kLowestRateForHum_Hz).
+/// \param scan_rate_Hz  granted.
+/// \param rate  measured over all scans so far; nullopt if unknown.
 [[nodiscard]] daq::SelfCheck check_idle(base::ScanIndex first, std::span<const double> raw,
                                         const daq::Calibration& calibration, double scan_rate_Hz,
                                         const std::optional<daq::RateEstimate>& rate = {});
 
-/// Findings of a self-check, from its values alone. \param normal_load_N  weight of the sled.
+/// Findings of a self-check, from its values and not from its `findings`.
+/// \param normal_load_N  weight of the sled. \param scan_rate_Hz  granted.
 [[nodiscard]] std::vector<base::Finding> self_check_findings(const daq::SelfCheck& check,
                                                              double normal_load_N, double scan_rate_Hz);
 
-/// Fewest scans for noise, hum and drift: ten for each of the six parameters, so that a standard error is
-/// known to 10 %.
+/// Fewest scans for zero, drift, noise, hum and spikes: ten for each of the six parameters, so that a
+/// standard error is known to 10 %.
 inline constexpr std::size_t kFewestIdleScans = 60;
-/// Shortest time for noise, hum and drift: one and a half beats of 50 and 60 Hz (0.1 s), which tells the two
-/// apart.
+/// Shortest time that they must last: one and a half beats of 50 and 60 Hz (0.1 s), which tells them apart.
 inline constexpr double kShortestIdle_s = 0.15;
 
 /// Buffer of the latest idle scans. Thread-bound, allocates.
 class IdleScans {
  public:
-  /// Length of the buffer: enough for the drift, and small enough for a record.
+  /// Length of the buffer, but at most kMostScans: enough for the drift, and small enough for a record.
   static constexpr double kKept_s = 5.0;
   static constexpr std::size_t kMostScans = 8192;
 

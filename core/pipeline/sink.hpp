@@ -25,10 +25,10 @@ namespace stickslip::pipeline {
 
 /// A test began. Its scans follow, pre-trigger scans first.
 struct TestStart {
-  std::int64_t number = 0;     ///< Since the start of the program, from 1.
+  std::int64_t number = 0;     ///< Rises by one from test to test.
   daq::ScanIndex first = 0;    ///< First scan that belongs to the test's record.
   daq::ScanIndex trigger = 0;  ///< Scan at which the force or a command began it.
-  daq::ClockStamp stamp;       ///< When the trigger was detected, corrected for a stall.
+  daq::ClockStamp stamp;       ///< Of the block with the trigger, less the lateness of its reading.
   std::shared_ptr<const daq::SelfCheck> self_check;  ///< Null if there were no idle scans.
   bool by_command = false;
   /// Coefficient read by the unloaded cell; nullopt if no quiet scans gave it.
@@ -71,6 +71,7 @@ enum class EndCause {
   return std::nullopt;
 }
 
+/// A test ended, with its results.
 struct TestEnd {
   std::int64_t number = 0;
   daq::ScanIndex end = 0;  ///< One past the last scan of the record.
@@ -97,6 +98,7 @@ class Sink {
   /// \param second  codes of the second channel: as many, or none if there is no such channel.
   virtual void scans(daq::ScanIndex /*first*/, std::span<const double> /*raw*/,
                      std::span<const std::int32_t> /*second*/, const daq::ClockStamp& /*stamp*/) {}
+  /// Scans missing from the running test.
   virtual void gap(const daq::Gap& /*gap*/) {}
   /// Clock readings at a scan of the running test; in rising order, and after the scan itself.
   virtual void anchor(const daq::ClockAnchor& /*anchor*/) {}

@@ -20,26 +20,29 @@ namespace stickslip::pipeline {
 
 /// Facts of the load cell's calibration in use.
 struct CalibrationInUse {
-  std::optional<double> gain_uncertainty = {};      ///< Relative; shared by every coefficient.
+  std::optional<double> gain_uncertainty = {};      ///< Standard error over gain; nullopt: unknown.
   std::optional<daq::GainChange> gain_change = {};  ///< A change that had to be confirmed.
   std::string expires = {};                         ///< ISO 8601; empty: never.
-  std::optional<std::int64_t> expires_ns = {};      ///< The same as realtime.
+  std::optional<std::int64_t> expires_ns = {};      ///< As realtime, ns since 1970 UTC; nullopt: never.
 };
 
+/// The finding for a calibration that has expired. \param expires  date, ISO 8601.
 [[nodiscard]] base::Finding expired_finding(std::string_view expires);
 
+/// What is known of a test beside its scans. Anchors, gaps and self-check must outlive it.
 struct TestFacts {
   double scan_rate_Hz = 0.0;  ///< Granted.
   std::span<const daq::ClockAnchor> anchors = {};
   std::span<const daq::Gap> gaps = {};
+  /// Nullopt: unknown; no calibration then counts as expired.
   std::optional<std::int64_t> start_realtime_ns = {};
   CalibrationInUse calibration = {};
   double sled_mass_kg = 0.0;
   double normal_load_N = 0.0;
-  /// The test was cut out of a scanned bench, so that there should be unloaded scans before it.
+  /// The test was cut out of a longer sequence of scans, so that there should be unloaded scans before it.
   bool was_cut_out = false;
   const daq::SelfCheck* self_check = nullptr;  ///< Null: there were no unloaded scans.
-  /// Coefficient read by the unloaded cell.
+  /// Coefficient read by the unloaded cell before and after the test; nullopt if unknown.
   std::optional<double> level_before = {};
   std::optional<double> level_after = {};
   std::int64_t scan_count = 0;

@@ -18,7 +18,8 @@
 
 namespace stickslip::pipeline {
 
-/// Coefficients are force over normal load. Deterministic; thread-bound; add() does not allocate.
+/// Finds the level of the unloaded cell. Coefficients are force over normal load. Deterministic;
+/// thread-bound; add() does not allocate.
 class UnloadedLevel {
  public:
   /// Largest distance of the unloaded level from the calibrated zero; the friction of paper is higher.
@@ -27,37 +28,36 @@ class UnloadedLevel {
   /// tester uses exactly 0. The self-check's limit (self_check.cpp), a tenth of the smallest S − K of
   /// Penner's Table 1.
   static constexpr double kNearest = 0.0025;
-  /// After a load a quiet force counts as unloaded only below this part of the largest force, both above the
-  /// earlier level. A stopped belt and a sliding sled hold more.
+  /// After a load a quiet force counts as unloaded only up to this part of the largest force, both measured
+  /// from the level before the load. A stopped belt and a sliding sled hold more.
   static constexpr double kUnloadedPart = 1.0 / 3.0;
-  /// Largest noise of a quiet stretch, twice the self-check's limit; larger noise may hide a motion.
+  /// Largest noise (σ) of a quiet stretch, twice the self-check's limit; larger noise may hide a motion.
   static constexpr double kLargestNoise = 0.01;
-  /// Length of a quiet stretch that gives a level before a test, or ends one.
+  /// Shortest quiet stretch that gives a level before a test, or ends a test.
   static constexpr double kQuiet_s = 0.5;
 
   /// \param scan_rate_Hz  > 0. \param stretch_s  length of a stretch; at least eight scans.
   /// \param step_coefficient  one A/D step; 0 if unknown.
   UnloadedLevel(double scan_rate_Hz, double stretch_s, double step_coefficient);
 
-  /// Consecutive scans.
+  /// Takes the next scan; scans are consecutive.
   void add(double coefficient);
   /// Starts a new stretch, after a gap or at the beginning of a record.
   void clear() noexcept;
 
-  /// Level of the latest stretch, if the latest scan has completed a quarter and the stretch is quiet; else
-  /// nullopt.
+  /// Level of the latest stretch, the mean of its quarters' medians, if the latest scan has completed a
+  /// quarter and the stretch is quiet; else nullopt.
   [[nodiscard]] std::optional<double> news() const noexcept { return news_; }
   [[nodiscard]] std::size_t stretch_scans() const noexcept { return kQuarters * quarter_.size(); }
   /// Whether the latest complete stretch was quiet.
   [[nodiscard]] bool quiet() const noexcept { return quiet_; }
 
-  /// Whether a quiet force at `level` may be that of the unloaded cell; fits_after() is for the time after a
-  /// test.
-  /// \param largest  highest force of the test that it comes after.
-  /// \param before  the level before that test.
+  /// Whether a quiet force at `level` may be that of the unloaded cell: at most kFarthest from zero.
   [[nodiscard]] static bool fits(double level) noexcept;
+  /// fits() for a force during or after a test: also at most kUnloadedPart of the largest force.
+  /// \param largest  highest coefficient of that test. \param before  the unloaded level before it.
   [[nodiscard]] static bool fits_after(double level, double largest, double before) noexcept;
-  /// The level used for decisions: 0 if `level` is within kNearest of it, else `level`.
+  /// The level used for decisions: 0 if `level` is at most kNearest from it, else `level`.
   [[nodiscard]] static double of_decisions(double level) noexcept;
 
  private:

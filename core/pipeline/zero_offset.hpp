@@ -8,11 +8,12 @@
 
 namespace stickslip::pipeline {
 
-/// If the unloaded cell read more than UnloadedLevel::kNearest before or after the test, adds a finding, and
-/// adds the larger of the two levels in quadrature to the systematic uncertainty of each coefficient that it
-/// shifts; if it read less, notes that the zero adds nothing. Differences such as S − K, amplitudes, times
-/// and frequencies are not affected. Values are not changed. \param before,after  levels as coefficients;
-/// nullopt if unknown.
+/// Adds the offset of the zero to the results. If the unloaded cell was off by more than
+/// UnloadedLevel::kNearest before or after the test, adds a finding, and the larger offset, in quadrature, to
+/// the systematic uncertainty of S, K, the static and the kinetic coefficient. If it was not, notes that the
+/// zero adds nothing; if neither level is known, does nothing. Values do not change, nor do differences such
+/// as S − K, amplitudes, times and frequencies.
+/// \param before,after  levels as coefficients; nullopt, or not finite, if unknown.
 void add_zero_offset(analysis::TestResults& results, std::optional<double> before,
                      std::optional<double> after);
 

@@ -13,7 +13,7 @@
 
 namespace stickslip::record {
 
-/// Encoder of one journal. Returned bytes include head and CRC and are valid until the next call.
+/// Encoder of one journal's entries. Returned bytes include head and CRC and are valid until the next call.
 class EntryBuilder {
  public:
   using Bytes = std::span<const std::byte>;
@@ -22,11 +22,13 @@ class EntryBuilder {
   explicit EntryBuilder(const RecordHeader& header);
 
   [[nodiscard]] Bytes header(const RecordHeader& header);
-  /// \param first  rises strictly over all scans of the journal (contract).
-  /// \param raw    consecutive, not empty; counts are whole numbers in 0 … maxdata (contract).
+  /// \param first  not before the end of the scans of the latest call (contract).
+  /// \param raw  consecutive, not empty; counts are whole numbers in 0 … maxdata (contract).
+  /// \param stamp  only its monotonic time is stored.
   [[nodiscard]] Bytes scans(daq::ScanIndex first, std::span<const double> raw, const daq::ClockStamp& stamp);
+  /// Noise-free coefficients of consecutive scans that are in the journal already.
   [[nodiscard]] Bytes true_coefficients(daq::ScanIndex first, std::span<const double> coefficient);
-  /// Codes of the second channel, for scans that are in the journal already.
+  /// Codes of the second channel, of consecutive scans that are in the journal already.
   [[nodiscard]] Bytes second(daq::ScanIndex first, std::span<const std::int32_t> codes);
   [[nodiscard]] Bytes spikes(std::span<const daq::ScanIndex> spikes);
   [[nodiscard]] Bytes gap(const daq::Gap& gap);

@@ -19,7 +19,7 @@ struct QuantityName {
 
 [[nodiscard]] QuantityName name(daq::RawQuantity quantity) noexcept;
 [[nodiscard]] std::optional<daq::RawQuantity> quantity_from_name(std::string_view text) noexcept;
-/// Whether the board's counts are stored as u16, not u32.
+/// Whether the board's counts are stored as u16 (maxdata ≤ 65 535), not u32.
 [[nodiscard]] bool counts_fit_u16(const daq::BoardInfo& board) noexcept;
 [[nodiscard]] std::optional<daq::GapCause> gap_cause_from_name(std::string_view text) noexcept;
 [[nodiscard]] std::optional<model::Mode> mode_from_name(std::string_view text) noexcept;

@@ -8,13 +8,14 @@
 
 namespace stickslip::record {
 
-/// An empty field is "fit", the default. Error: kUsage, a word that is no estimator.
+/// Estimator that process.estimator names (detect::estimator_tier_from_name()); kFit if it is empty.
+/// Errors: kUsage if the name is unknown.
 [[nodiscard]] base::Result<detect::EstimatorTier> estimator_of(const ProcessFacts& process);
 
-/// Version 0.1 wrote the estimator into the text of the method, "penner-1995 kinetic_cycles=10
-/// estimator=peak", unless it was "fit". Moves it from there into its field, if that is empty; what is no
-/// estimator stays where it is. For readers of files: whatever comes after them knows the field alone. It can
-/// go with the version that no longer reads records of format version 2 (kOldestFormatVersion).
+/// Moves an estimator's name from process.method, where version 0.1 wrote it ("penner-1995 kinetic_cycles=10
+/// estimator=peak"), to process.estimator. Does nothing if there is none, the name is unknown, or that field
+/// is set. Readers of files call it, so that other code needs only the field. It can be removed once format
+/// version 2 is no longer read (kOldestFormatVersion).
 void read_estimator_of_0_1(ProcessFacts& process);
 
 }  // namespace stickslip::record

@@ -1,6 +1,7 @@
 /// \file
-/// Tables of a record's fields with name, unit and meaning. The journal's JSON, the HDF5 writer and the HDF5
-/// reader all use them.
+/// Tables of the plain fields of a record's structs, with name, unit and meaning. The journal's JSON, the
+/// HDF5 writer and the HDF5 reader all use them, so that a field added here is stored by all. Not in the
+/// tables: enumerations, results, operator, metadata, and the plain members of RecordHeader and EndRecord.
 ///
 ///     for_each_field(header.tester, [](const FieldName& name, auto& value) { … });
 ///
@@ -23,7 +24,7 @@ inline constexpr const char* kSystematic = "systematic_uncertainty";
 struct FieldName {
   std::string_view name;
   std::string_view unit;       ///< SI, "1" for a ratio, a number or a count; empty for text.
-  std::string_view long_name;  ///< With the unit, for axes; empty for text.
+  std::string_view long_name;  ///< Meaning with the unit, for axes; empty for text.
 };
 
 /// `const Fields` or `Fields`: each table serves reading and writing.
@@ -78,7 +79,7 @@ void for_each_field(Fields& fields, Visitor&& visit) {
         fields.unloaded_level);
 }
 
-/// All fields except the scans, which are stored like those of the record.
+/// All fields of the self-check except its raw readings, which are written separately.
 template <FieldsOf<daq::SelfCheck> Check, typename Visitor>
 void for_each_field(Check& check, Visitor&& visit) {
   visit(FieldName{"first_scan", "1", "first scan looked at [1]"}, check.first_scan);
@@ -155,7 +156,7 @@ void for_each_field(Channel& channel, Visitor&& visit) {
   visit(FieldName{"zero", "V", "voltage at rest or at the origin [V]"}, channel.zero_V);
 }
 
-/// Names of the input.
+/// Driver, board and device.
 template <FieldsOf<daq::BoardInfo> Info, typename Visitor>
 void for_each_name_field(Info& board, Visitor&& visit) {
   visit(FieldName{"driver", "", ""}, board.driver);
@@ -163,7 +164,7 @@ void for_each_name_field(Info& board, Visitor&& visit) {
   visit(FieldName{"device", "", ""}, board.device);
 }
 
-/// Fields of the converter; not used for imported values.
+/// Fields of the converter. HDF5 files have them only if the raw values are counts; journals always.
 template <FieldsOf<daq::BoardInfo> Info, typename Visitor>
 void for_each_converter_field(Info& board, Visitor&& visit) {
   visit(FieldName{"subdevice", "1", "number of the subdevice [1]"}, board.subdevice);
@@ -246,7 +247,7 @@ void for_each_cycle_column(Visitor&& visit) {
         &Cycle::live_decision_time_s);
 }
 
-/// Columns of the table of true slips.
+/// Columns of the table of true slips. \param visit  called as visit(FieldName, member pointer).
 template <typename Visitor>
 void for_each_true_cycle_column(Visitor&& visit) {
   using model::TrueCycle;

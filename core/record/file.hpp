@@ -1,5 +1,5 @@
 /// \file
-/// Durable file operations. Every result is checked; errors contain the path and the system's message.
+/// Durable file operations. Errors contain the path and, where a system call failed, its message.
 #pragma once
 
 #include <cstddef>
@@ -18,24 +18,25 @@ namespace stickslip::record {
 using base::Descriptor;
 using base::system_message;
 
-/// fsync of a file by its path.
+/// fsync of a file by its path. Errors: kFailure.
 [[nodiscard]] base::Result<void> sync_path(const std::filesystem::path& path,
                                            const FileCalls& calls = system_calls());
 
 /// fsync of a folder, so that names in it survive a power cut. Succeeds on a file system that cannot sync
-/// folders (EINVAL and the like); probe_folder() reports that limitation.
+/// folders (EINVAL and the like); probe_folder() reports that limitation. Errors: kFailure.
 [[nodiscard]] base::Result<void> sync_folder(const std::filesystem::path& folder,
                                              const FileCalls& calls = system_calls());
 
-/// Whether errno means that the file system does not support the call.
+/// Whether this errno value means that the file system does not support the call.
 [[nodiscard]] bool is_unsupported(int error) noexcept;
 
 /// The folder that holds a file, "." for a bare name.
 [[nodiscard]] std::filesystem::path folder_of(const std::filesystem::path& path);
 
-/// Renames without ever replacing; kUsage if `to` exists. The folder is synced. Without RENAME_NOREPLACE, it
-/// links the new name and removes the old one. Without hard links, it creates an empty file under the new
-/// name and renames over it; a stop in between leaves the empty file.
+/// Renames without ever replacing, and syncs the folder of `to`. Errors: kUsage if `to` exists, else
+/// kFailure; if only the sync failed, the file has its new name. Without RENAME_NOREPLACE, it links the new
+/// name and removes the old one. Without hard links, it creates an empty file under the new name and renames
+/// over it; a stop in between leaves the empty file.
 [[nodiscard]] base::Result<void> rename_to_new(const std::filesystem::path& from,
                                                const std::filesystem::path& to,
                                                const FileCalls& calls = system_calls());
@@ -47,7 +48,7 @@ using base::system_message;
 /// write() until all is written or an error. \return bytes written; errno says why if fewer.
 [[nodiscard]] std::size_t write_all(int descriptor, std::span<const std::byte> bytes, const FileCalls& calls);
 
-/// The whole file. Errors as base::read_text().
+/// Content of a whole file. Errors as base::read_text().
 [[nodiscard]] base::Result<std::vector<std::byte>> read_file(const std::filesystem::path& path);
 
 }  // namespace stickslip::record

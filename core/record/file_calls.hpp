@@ -1,7 +1,8 @@
 /// \file
 /// Table of the system calls for journals and records, which tests can observe, refuse or delay
-/// (tests/support/*_disk.hpp). Each function makes one system call. All writes go through it, those of HDF5
-/// too (hdf_driver.hpp); some questions of status do not.
+/// (tests/support/*_disk.hpp). Each function makes one system call. All writes of journals and records go
+/// through it, those of HDF5 too (hdf_driver.hpp). Not all other calls do, such as openings for reading and
+/// questions of status.
 #pragma once
 
 #include <sys/stat.h>
@@ -12,7 +13,8 @@
 
 namespace stickslip::record {
 
-/// As the functions of POSIX: −1 and errno on failure. May be called from several threads.
+/// System calls. Each function behaves as the POSIX function of its name: −1 and errno on failure.
+/// Thread-safe.
 class FileCalls {
  public:
   virtual ~FileCalls() = default;
@@ -39,7 +41,8 @@ class FileCalls {
   virtual int link(const char* from, const char* to) const = 0;
   virtual int unlink(const char* path) const = 0;
   virtual int mkdir(const char* path, mode_t mode) const = 0;
-  /// Free bytes in the file system of a folder, or −1; errno is not always set.
+  /// Bytes that an unprivileged user can still write to the file system of a folder; −1 if unknown, where
+  /// errno is not always set.
   virtual std::int64_t room(const char* folder) const = 0;
 };
 

@@ -1,10 +1,11 @@
 /// \file
-/// Findings in JSON: the sentences under "findings", as they always were, and beside them the whole findings.
+/// Findings in JSON: the sentences under "findings", which is all that older documents have, and the whole
+/// findings under "coded_findings".
 ///
 ///     {"findings": ["zero: …"],
 ///      "coded_findings": [{"code": "zero-offset", "severity": "warning", "text": "zero: …",
-///                          "action": "tare …", "numbers": [{"name": "offset", "value": -0.04, "unit":
-///                          "1"}]}]}
+///                          "action": "tare …",
+///                          "numbers": [{"name": "offset", "value": -0.04, "unit": "1"}]}]}
 #pragma once
 
 #include <span>
@@ -28,7 +29,7 @@ template <typename Json>
   return list;
 }
 
-/// \throws nlohmann::json::exception if it is no list of numbers.
+/// Inverse of numbers_json(). \throws nlohmann::json::exception if an entry lacks a key or has another type.
 template <typename Json>
 [[nodiscard]] std::vector<base::FindingNumber> numbers_from_json(const Json& list) {
   std::vector<base::FindingNumber> numbers;
@@ -53,14 +54,16 @@ template <typename Json>
   return list;
 }
 
+/// Sets both keys of the object.
 template <typename Json>
 void put_findings(std::span<const base::Finding> findings, Json& object) {
   object[kFindings] = base::texts_of(findings);
   object[kCodedFindings] = findings_json<Json>(findings);
 }
 
-/// A sentence of a document that has no codes becomes an uncoded finding; none if there is neither.
-/// \throws nlohmann::json::exception if they are no findings.
+/// Reads the findings of an object: the whole ones under "coded_findings", else each sentence under
+/// "findings" as kUncoded. Empty if it has neither key. An unknown severity counts as a warning.
+/// \throws nlohmann::json::exception if an entry lacks a key or has another type.
 template <typename Json>
 [[nodiscard]] std::vector<base::Finding> findings_in(const Json& object) {
   std::vector<base::Finding> findings;

@@ -1,5 +1,5 @@
 /// \file
-/// An input file given by the user. It distinguishes read errors of the system from damaged content.
+/// Input file given by the user. It distinguishes read errors of the system from damaged content.
 ///
 ///     auto file = GivenFile::open(path);       // else: no such file, no permission, cannot be read now …
 ///     if (auto locked = file->share(); !locked) …  // somebody is writing it
@@ -22,10 +22,10 @@
 
 namespace stickslip::record {
 
-/// Why a file cannot be read, by errno, and what to do: one line without the file's name.
+/// Why a file cannot be read, by errno, and what to do where that is known: one line without the file's name.
 [[nodiscard]] std::string why_unreadable(int error);
 
-/// Copies share the open file. Thread-safe except share().
+/// A file open for reading. Copies share it; the last one closes it. Thread-safe except share() and load().
 class GivenFile {
  public:
   /// Opens a regular file; never blocks.
@@ -40,11 +40,12 @@ class GivenFile {
   /// as open().
   [[nodiscard]] base::Result<void> share() const;
 
-  /// Reads at most bytes.size() bytes from `position` on. \return their number; −1 with errno on an error.
+  /// Reads at most bytes.size() bytes from `position` on. \return their number, 0 at the end of the file; −1
+  /// with errno on an error.
   [[nodiscard]] ssize_t read(std::span<std::byte> bytes, std::uint64_t position) const;
-  /// Reads the whole file, so that a read error is seen before HDF5, which crashes on it. One of 1 MiB or
-  /// less is kept, and read() takes it from there. To be called before other threads read. \return whether
-  /// there was no read error.
+  /// Reads the whole file, so that a read error is found before HDF5 reads, which can crash on one. The
+  /// content of a file of at most 1 MiB stays in memory for read(). To be called before other threads read.
+  /// \return whether there was no read error; refused() has its errno.
   [[nodiscard]] bool load() const;
 
   [[nodiscard]] std::uint64_t size() const noexcept { return state_->size; }
@@ -64,7 +65,7 @@ class GivenFile {
   std::shared_ptr<State> state_;
 };
 
-/// Opens a record: open(), share() and load().
+/// Opens an HDF5 file for reading: open(), share() and load(). Errors as theirs; a read error as in open().
 [[nodiscard]] base::Result<GivenFile> open_shared(const std::filesystem::path& path,
                                                   const FileCalls& calls = system_calls());
 

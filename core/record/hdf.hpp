@@ -11,7 +11,8 @@
 
 namespace stickslip::record {
 
-/// Error of HDF5: one line without the file's name, which the public functions add.
+/// Error of HDF5, or content that is not of the format: one line without the file's name, which the public
+/// functions add.
 class HdfError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -21,14 +22,14 @@ class HdfError : public std::runtime_error {
 /// process's std::new_handler first.
 [[noreturn]] void throw_refused(const std::string& what);
 
-/// Why the last handle that this thread could not close was refused; empty: all were closed. HDF5 writes the
-/// last bytes of a data set when it is closed, and a destructor cannot report that they are lost: whoever
-/// writes a file empties this first, and asks for it at the end.
+/// Reason of this thread's latest failure to close a handle in a destructor; empty if there was none since
+/// create_file(). Closing a data set may write its last bytes: finish_file() fails if this is not empty.
 [[nodiscard]] std::string& unclosed() noexcept;
-/// Notes there the library's innermost reason.
+/// Sets unclosed() to the library's innermost reason.
 void note_unclosed() noexcept;
 
-/// Owns an HDF5 id. \tparam Close  the library's function for its kind.
+/// Owns an HDF5 id. Move-only. The destructor closes it; a failure goes to unclosed().
+/// \tparam Close  the library's function for its kind.
 template <herr_t (*Close)(hid_t)>
 class Handle {
  public:
@@ -71,8 +72,8 @@ inline void check(herr_t status, const std::string& what) {
   if (status < 0) throw_refused(what);
 }
 
-/// To be called before any other HDF5 function: no exit handler (it crashes after a full disk), no
-/// error printing on this thread.
+/// To be called in each thread before any other HDF5 function: switches off the library's exit handler, which
+/// crashes after a full disk, and its printing of errors in this thread. \throws HdfError.
 void prepare_hdf5();
 
 /// Memory and file type of a C++ number. Files are little-endian.

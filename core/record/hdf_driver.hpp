@@ -1,6 +1,6 @@
 /// \file
-/// HDF5 file driver on FileCalls: a closed file is synced, and read errors of the system are distinguished
-/// from damage.
+/// HDF5 file driver on FileCalls: a written file is synced when it is closed, and read errors of the system
+/// are distinguished from damage.
 #pragma once
 
 #include <filesystem>
@@ -17,12 +17,13 @@ namespace stickslip::record {
 /// \throws HdfError.
 void write_through(const PropertyHandle& access, const FileCalls& calls);
 
-/// Whether the file has HDF5's signature at an allowed position: 0, 512, 1024, 2048 … bytes.
+/// Whether the file has HDF5's signature at an allowed position: 0, 512, 1024, 2048 … bytes. False also if it
+/// cannot be read; see GivenFile::refused().
 [[nodiscard]] bool is_hdf5(const GivenFile& file);
 
 /// Opens an existing file for reading through its open descriptor, without HDF5's lock; call
 /// GivenFile::share() first to exclude writers.
-/// \param path  for messages.
+/// \param path  must exist, since HDF5 resolves it; nothing is read from there.
 /// \throws HdfError if it is not an HDF5 file or its structure cannot be read.
 [[nodiscard]] FileHandle open_hdf5(const GivenFile& file, const std::filesystem::path& path);
 

@@ -1,6 +1,7 @@
 /// \file
-/// Reads data sets and attributes of untrusted files. All functions throw HdfError that names the object and
-/// the fault.
+/// Reads data sets and attributes of untrusted files. All functions except has() throw HdfError that names
+/// the object and the fault. Numbers must be stored as type T exactly (kind, size, sign). At most 2²⁸ rows of
+/// a column, or 64 MiB of texts, are read at once.
 #pragma once
 
 #include <optional>
@@ -13,7 +14,7 @@
 
 namespace stickslip::record {
 
-/// Whether a link of that name exists in the group.
+/// Whether a link of that name exists in the group; false also on an error.
 [[nodiscard]] bool has(hid_t parent, const std::string& name);
 
 /// Names of all links of a group, rising. \param group_name  for messages. \param most  more are refused.
@@ -21,29 +22,35 @@ namespace stickslip::record {
 
 [[nodiscard]] GroupHandle open_group(hid_t parent, const std::string& name);
 
+/// Attribute that is one variable-length text.
 [[nodiscard]] std::string read_attribute(hid_t object, const std::string& name);
+/// As read_attribute(); nullopt if there is none.
 [[nodiscard]] std::optional<std::string> find_attribute(hid_t object, const std::string& name);
+/// Attribute that is one number; nullopt if there is none.
 template <typename T>
 [[nodiscard]] std::optional<T> find_number_attribute(hid_t object, const std::string& name);
 
 [[nodiscard]] DatasetHandle open_dataset(hid_t parent, const std::string& name);
 
+/// Single text of fixed length, without the zero bytes at its end.
 [[nodiscard]] std::string read_text(hid_t parent, const std::string& name);
 [[nodiscard]] std::string read_text(const DatasetHandle& dataset, const std::string& name);
+/// Column of such texts.
 [[nodiscard]] std::vector<std::string> read_texts(hid_t parent, const std::string& name);
 template <typename T>
 [[nodiscard]] T read_scalar(hid_t parent, const std::string& name);
-/// Of an open data set. \param name  for messages.
+/// Reads an open data set. \param name  for messages.
 template <typename T>
 [[nodiscard]] T read_scalar(const DatasetHandle& dataset, const std::string& name);
-/// \param count  required length, if known. The stored type must be T exactly (size, sign, kind).
+/// \param count  required length, if known.
 template <typename T>
 [[nodiscard]] std::vector<T> read_column(hid_t parent, const std::string& name,
                                          std::optional<std::size_t> count = std::nullopt);
-/// Rows [first, first + values.size()) of a column of type T.
+/// Rows [first, first + values.size()) of a column of type T. Call row_count() before, which refuses
+/// a data set that has not exactly one dimension.
 template <typename T>
 void read_rows(const DatasetHandle& column, const std::string& name, std::size_t first, std::span<T> values);
-/// Rows [first, first + count) of a column of texts.
+/// Rows [first, first + count) of a column of texts. Call row_count() before, as for read_rows().
 [[nodiscard]] std::vector<std::string> read_text_rows(const DatasetHandle& column, const std::string& name,
                                                       std::size_t first, std::size_t count);
 /// Number of rows of a column.
@@ -53,7 +60,8 @@ void read_rows(const DatasetHandle& column, const std::string& name, std::size_t
 template <typename T>
 [[nodiscard]] bool holds(hid_t parent, const std::string& name);
 
-/// Visitor for for_each_field() that reads the fields; inverse of FieldWriter.
+/// Visitor for for_each_field() that reads the fields; inverse of FieldWriter. A text, vector or optional
+/// that is not in the file becomes empty; a missing number throws HdfError.
 class FieldReader {
  public:
   explicit FieldReader(hid_t parent) : parent_(parent) {}

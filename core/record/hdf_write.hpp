@@ -1,6 +1,6 @@
 /// \file
-/// Writing data sets and attributes: every number with units and long_name, strings as viewers and
-/// readers of several languages can read them. All functions throw HdfError.
+/// Writes data sets and attributes. Data sets of numbers have the attributes units and long_name; texts are
+/// UTF-8 as viewers and readers of several languages can read them. All functions throw HdfError.
 #pragma once
 
 #include <filesystem>
@@ -16,12 +16,13 @@
 
 namespace stickslip::record {
 
-/// Creates a file, replacing an old one, in a format that HDF5 1.8 and later read; open for writing.
+/// Creates a file, open for writing, in a format that HDF5 1.8 and later read. An old file at `path` is
+/// unlinked first. Clears unclosed(). \param calls  must outlive the file.
 [[nodiscard]] FileHandle create_file(const std::filesystem::path& path,
                                      const FileCalls& calls = system_calls());
 
-/// Flushes and closes a file of create_file() after all other handles. \throws HdfError also if one of those
-/// could not be closed.
+/// Flushes, closes and syncs a file of create_file(). All other handles of the file must be closed before.
+/// \throws HdfError also if one of them is open or could not be closed (unclosed()).
 void finish_file(FileHandle file);
 
 /// \param nx_class  NeXus class, e.g. "NXdata".
@@ -31,6 +32,7 @@ void finish_file(FileHandle file);
 void write_attribute(hid_t object, const std::string& name, std::string_view text);
 /// Array of variable-length UTF-8 texts as an attribute.
 void write_attribute(hid_t object, const std::string& name, const std::vector<std::string>& texts);
+/// Number as an attribute, without unit.
 template <typename T>
 void write_number_attribute(hid_t object, const std::string& name, T value);
 
@@ -80,10 +82,11 @@ class TextColumnWriter {
   hsize_t row_ = 0;
 };
 
-/// Column of texts, fixed length.
+/// Column of texts of fixed length, not compressed.
 DatasetHandle write_texts(hid_t parent, const std::string& name, const std::vector<std::string>& texts);
 
-/// Attaches the dimension scale of another table to a column. \param name  of the column.
+/// Attaches a dimension scale, for example that of another table, to a column. \param name  of the column,
+/// for messages.
 void attach_scale(const DatasetHandle& column, const DatasetHandle& scale, const std::string& name);
 /// Array of numbers in row-major order; stored as by write_column().
 template <typename T>
@@ -93,7 +96,8 @@ DatasetHandle write_array(hid_t parent, const FieldName& name, std::span<const h
 DatasetHandle write_text_array(hid_t parent, const std::string& name, std::span<const hsize_t> shape,
                                const std::vector<std::string_view>& texts);
 
-/// A group whose data sets are the columns of one table; the first is the scale of the others.
+/// A group whose data sets are the columns of one table; the first column added is the dimension scale of the
+/// others.
 class TableWriter {
  public:
   explicit TableWriter(GroupHandle group) : group_(std::move(group)) {}

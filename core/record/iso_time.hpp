@@ -9,10 +9,11 @@
 
 namespace stickslip::record {
 
-/// UTC, nine decimals, so that the way back is exact.
+/// Text of a time in ns since 1970: UTC, nine decimals.
 [[nodiscard]] std::string iso_time(std::int64_t realtime_ns);
 
-/// Only what iso_time() writes; nothing for any other text.
+/// Inverse of iso_time(), exact; nullopt for any other text, and for times within 2 s of the ends of the
+/// range (1677 and 2262).
 [[nodiscard]] std::optional<std::int64_t> ns_from_iso_time(std::string_view text);
 
 }  // namespace stickslip::record

@@ -1,14 +1,15 @@
 /// \file
-/// The append-only journal that a test is written to while it runs.
+/// Writer and reader of journals. A journal is the append-only file that a test is written to while it runs;
+/// the daemon writes it by PatientJournal.
 ///
 ///     auto journal = JournalWriter::create(folder / "TEST.journal", header);
 ///     journal->append_scans(first, raw, stamp);  // every 0.1 s
 ///     journal->sync();                           // once a second
 ///     journal->append_end(end);
 ///
-/// Each entry is one write() of a 32-byte head and its payload under one CRC-32C, so that a reader can tell
-/// complete entries from torn ones. Measured: kill -9 loses nothing that was written, and a power cut nothing
-/// that was synced; HDF5 written live loses both. Layout of an entry: docs/record-file.md.
+/// Each entry is a 32-byte head and its payload under one CRC-32C, so that a reader can tell complete entries
+/// from torn ones. Measured: kill -9 loses nothing that was written, and a power cut nothing that was synced;
+/// HDF5 written live loses both. Layout of an entry: docs/record-file.md.
 #pragma once
 
 #include <cstdint>
@@ -35,12 +36,14 @@ inline constexpr std::string_view kJournalExtension = ".journal";
 /// Extension of the record.
 inline constexpr std::string_view kRecordExtension = ".h5";
 
-/// Not thread-safe: the storage thread owns it. Move-only. Destruction closes without syncing.
+/// Writes a journal, each entry at once to the file. Not thread-safe. Move-only. Destruction closes without
+/// syncing.
 class JournalWriter {
  public:
-  /// Creates the file, which must not exist, writes the header and makes file and name durable.
-  /// A header without uuid gets one. Errors (kFailure) leave no file behind.
-  /// \param calls  outlive the journal.
+  /// Creates the file, which must not exist, locks it (journal_care.hpp), writes the header and makes file
+  /// and name durable. A header without uuid gets one. Errors (kFailure) leave no file behind.
+  /// \param header  has a load cell if the board gives counts (contract).
+  /// \param calls  must outlive the journal.
   [[nodiscard]] static base::Result<JournalWriter> create(const std::filesystem::path& path,
                                                           RecordHeader header,
                                                           const FileCalls& calls = system_calls());
@@ -48,22 +51,23 @@ class JournalWriter {
   // Every append either adds a complete entry, or returns an error (kFailure) and leaves the file unchanged,
   // so that it can be repeated.
 
-  /// \param first  rises strictly over all scans of the journal.
-  /// \param raw    consecutive, not empty; counts are whole numbers in 0 … maxdata (contract).
+  /// \param first  not before the end of the scans written so far (contract).
+  /// \param raw  consecutive, not empty; counts are whole numbers in 0 … maxdata (contract).
   [[nodiscard]] base::Result<void> append_scans(daq::ScanIndex first, std::span<const double> raw,
                                                 const daq::ClockStamp& stamp);
-  /// The noise-free force of scans that are in the journal already (model::TrueForce).
-  /// \param first  rises strictly over all calls. \param coefficient  consecutive.
+  /// The noise-free force of consecutive scans that are in the journal already (model::TrueForce).
+  /// \param first  of scans that no earlier call had; read_journal() takes an overlap for damage.
   [[nodiscard]] base::Result<void> append_true_coefficients(daq::ScanIndex first,
                                                             std::span<const double> coefficient);
-  /// Codes of the second channel, of scans that are in the journal already. As above.
+  /// Codes of the second channel, daq::SecondChannel::kNoCode where none came. Otherwise as
+  /// append_true_coefficients().
   [[nodiscard]] base::Result<void> append_second(daq::ScanIndex first, std::span<const std::int32_t> codes);
   [[nodiscard]] base::Result<void> append_spikes(std::span<const daq::ScanIndex> spikes);
   [[nodiscard]] base::Result<void> append_gap(const daq::Gap& gap);
   [[nodiscard]] base::Result<void> append_cycle(const detect::Cycle& cycle);
   [[nodiscard]] base::Result<void> append_anchor(const ClockAnchor& anchor);
   [[nodiscard]] base::Result<void> append_event(const Event& event);
-  /// The last entry; the journal is then ready for finalise().
+  /// The last entry. Once this object is destroyed, finalise() can take the journal.
   [[nodiscard]] base::Result<void> append_end(const EndRecord& end);
 
   /// fdatasync: everything appended so far survives a power cut if this succeeds.
@@ -81,11 +85,11 @@ class JournalWriter {
   EntryBuilder builder_;
 };
 
-/// Consecutive scans.
+/// Run of consecutive scans of a journal.
 struct ScanRun {
   daq::ScanIndex first = 0;
   std::size_t count = 0;
-  std::size_t row = 0;  ///< Number of scans before it.
+  std::size_t row = 0;  ///< Number of the journal's scans before it.
 
   [[nodiscard]] daq::ScanIndex end() const noexcept { return first + static_cast<daq::ScanIndex>(count); }
 };
@@ -93,27 +97,27 @@ struct ScanRun {
 /// Position of an entry with values of consecutive scans.
 struct EntryPlace {
   std::uint64_t position = 0;  ///< Byte of the file.
-  std::uint64_t size = 0;      ///< Bytes.
+  std::uint64_t size = 0;      ///< Bytes, head included.
   daq::ScanIndex first = 0;
   std::size_t count = 0;
 
   [[nodiscard]] daq::ScanIndex end() const noexcept { return first + static_cast<daq::ScanIndex>(count); }
 };
 
-/// Content of a journal: all complete and valid entries. Cycles and events are in the order of the file
-/// (cycles are the end's if there is one), all others in the order of their scans.
+/// Content of a journal: all complete and valid entries. Cycles and events are in the order of the file, all
+/// others in the order of their scans. If the journal has an end, cycles and spikes are the end's.
 struct JournalReading {
-  /// With JournalScans::kCount its scan, raw, second and true_coefficient are empty. Missing scans without a
-  /// gap entry become gaps with the cause damaged, or unknown if every byte was readable.
+  /// With JournalScans::kCount its scan, raw, second and true_coefficient are empty. Scans missing between
+  /// two runs without a gap entry become gaps with the cause damaged, or unknown if every byte was readable.
   Record record;
   std::size_t scan_count = 0;
   std::vector<ScanRun> runs;  ///< All scans, rising.
-  // Rising and without overlap.
+  // Places of the entries, rising and without overlap.
   std::deque<EntryPlace> scans;
   std::deque<EntryPlace> true_coefficients;
   std::deque<EntryPlace> second_codes;
   std::uint64_t file_size = 0;
-  std::vector<UnreadBytes> damaged;     ///< In the order of position.
+  std::vector<UnreadBytes> damaged;     ///< Unreadable bytes and invalid entries, in the order of position.
   std::optional<UnreadBytes> torn_end;  ///< Incomplete end of the file, as after a stop.
 
   /// Number of damaged bytes.
@@ -125,15 +129,15 @@ struct JournalReading {
 /// Whether read_journal() keeps the scans in memory or only counts them.
 enum class JournalScans { kKeep, kCount };
 
-/// Reads every complete entry. Memory is that of the tables, and of the scans with kKeep. Errors: kFailure if
-/// the file cannot be read, or if its header is damaged but complete entries follow; kUsage if it is not a
-/// journal.
+/// Reads every complete entry, without a lock. Memory is that of the tables, and of the scans with kKeep.
+/// Errors: kFailure if the file cannot be read, or if its header is damaged but complete entries follow;
+/// kUsage if there is no such file, no complete entry in it, or a whole header that this program cannot read.
 [[nodiscard]] base::Result<JournalReading> read_journal(const std::filesystem::path& path,
                                                         JournalScans scans = JournalScans::kKeep,
                                                         const FileCalls& calls = system_calls());
 
-/// Source of a journal's scans, read from disk. Throws std::runtime_error if the file changed since
-/// read_journal().
+/// Source of a journal's scans, read from disk. Throws std::runtime_error if the file cannot be read or
+/// changed since read_journal().
 class JournalScanSource final : public ScanSource {
  public:
   /// \param reading  of this journal; must outlive the object, as must `calls`.

@@ -18,8 +18,7 @@ class JournalLock {
   /// \param longest  time to wait for another holder, such as the finaliser of a killed daemon, which ends
   ///        soon.
   /// Errors: kUsage if the file does not exist or is no regular file; kFailure if it cannot be opened, or if
-  /// another process keeps the lock or has removed the file. Where the file system has no locks, the file
-  /// counts as locked.
+  /// another holder keeps the lock or has removed the file. Succeeds where the file system has no locks.
   [[nodiscard]] static base::Result<JournalLock> take(const std::filesystem::path& journal,
                                                       std::chrono::milliseconds longest = {},
                                                       const FileCalls& calls = system_calls());
@@ -29,11 +28,12 @@ class JournalLock {
   Descriptor file_;
 };
 
-/// Locks a newly created file. \return false if another process holds the lock.
+/// Tries to lock an open journal, without waiting. \return false if another holder has the lock; true also
+/// where the file system has no locks.
 [[nodiscard]] bool lock_journal(int descriptor, const FileCalls& calls = system_calls()) noexcept;
 
-/// Removes a journal that consists of a torn end only (journal_entries.hpp). A stop before the header was
-/// synced leaves such a file; it contains no data. Other journals are not changed.
+/// Removes a journal that is empty or consists of a torn end only (JournalEntries::torn_end()). A stop before
+/// the header was synced leaves such a file; it contains no data. Other journals are not changed.
 /// \return whether it was removed. Errors: kFailure if it cannot be read or removed, or if another process
 /// holds it for longer than `longest`.
 [[nodiscard]] base::Result<bool> remove_if_empty(const std::filesystem::path& journal,

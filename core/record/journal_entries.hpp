@@ -28,18 +28,19 @@ struct UnreadBytes {
   std::string why;
 };
 
-/// Move-only.
+/// Reader of one journal's entries, from front to back. Move-only.
 class JournalEntries {
  public:
-  /// Errors: kUsage if there is no such file, kFailure if it cannot be opened.
-  /// \param calls  outlive it.
+  /// Errors: kUsage if there is no such file or it is not a regular one, kFailure if it cannot be opened.
+  /// \param calls  must outlive the object.
   [[nodiscard]] static base::Result<JournalEntries> open(const std::filesystem::path& path,
                                                          const FileCalls& calls = system_calls());
 
-  /// The next complete entry, valid until the next call of any function. Nullopt at the end and after an
+  /// The next complete entry, valid until the next call of next() or at(). Nullopt at the end and after an
   /// error().
   [[nodiscard]] std::optional<Entry> next();
-  /// The complete entry at byte `position`, valid as above. Does not affect next().
+  /// The complete entry that begins at byte `position`; nullopt if there is none, or on an error(). Valid as
+  /// that of next(), which goes on where it was unless there was an error().
   [[nodiscard]] std::optional<Entry> at(std::uint64_t position);
 
   /// Position of the latest entry from next().
@@ -47,7 +48,8 @@ class JournalEntries {
   /// Damaged bytes skipped so far, rising.
   [[nodiscard]] const std::vector<UnreadBytes>& skipped() const noexcept { return skipped_; }
   /// After next() returned nullopt: the end of the file if it looks as after a stop. The file then ends
-  /// within an entry, or contains zeros from a sector boundary within an entry on. Damage can look the same.
+  /// within an entry, or contains only zeros after an entry or from a sector boundary (512 bytes) within one
+  /// on. Damage can look the same.
   [[nodiscard]] const std::optional<UnreadBytes>& torn_end() const noexcept { return torn_end_; }
   /// Read error of the disk with its remedy; empty if there was none. Such bytes do not count as damaged.
   [[nodiscard]] const std::string& error() const noexcept { return error_; }

@@ -15,12 +15,13 @@
 
 namespace stickslip::record {
 
-/// Not thread-safe. Move-only. Destruction closes without syncing.
+/// A journal's file, open for writing. Not thread-safe. Move-only. Destruction closes without syncing.
 class JournalFile {
  public:
   /// Creates the file, which must not exist, locks it (journal_care.hpp), writes its first entry, and syncs
   /// content and name. Errors (kFailure) leave no file behind.
-  /// \param calls  outlive the file.
+  /// \param header  bytes of the first entry.
+  /// \param calls  must outlive the object.
   [[nodiscard]] static base::Result<JournalFile> create(const std::filesystem::path& path,
                                                         std::span<const std::byte> header,
                                                         const FileCalls& calls);
@@ -29,20 +30,20 @@ class JournalFile {
   enum class Place {
     kItself,
     kNothing,  ///< Removed, renamed, or its folder was.
-    kAnother,  ///< Another file.
+    kAnother,  ///< Another file has the path.
     kUnknown,  ///< The path cannot be examined; see errno.
   };
   [[nodiscard]] Place place() const;
 
-  /// Creates another file with the same entries, read from the open file, whatever is at its path. Otherwise
-  /// as create(). Errors: kFailure; this file is unchanged.
+  /// Creates a file at `path`, as create(), with all entries of this one. They are read from the open file,
+  /// which may have lost its name. This file is unchanged.
   [[nodiscard]] base::Result<JournalFile> copy_to(const std::filesystem::path& path) const;
 
   /// Releases the lock, so that another process may finalise the journal.
   void unlock();
 
   /// Adds complete entries. On an error none is added: the file is truncated to its old size, now or before
-  /// the next attempt, and the call may be repeated.
+  /// the next attempt, and the call may be repeated. Errors: kFailure.
   [[nodiscard]] base::Result<void> append(std::span<const std::byte> entries);
 
   /// fdatasync: everything appended so far survives a power cut if this succeeds. If it fails, the data
@@ -50,7 +51,7 @@ class JournalFile {
   /// 2020, "Can applications recover from fsync failures?"].
   [[nodiscard]] base::Result<void> sync();
 
-  /// Truncates the file to `size`, now or before the next append.
+  /// Truncates the file to `size` bytes, the end of an entry, now or before the next append.
   void cut_to(std::uint64_t size);
   /// Releases the disk space reserved beyond the end, now or before the next append.
   void give_room_back();

@@ -4,7 +4,8 @@
 ///     0 magic "SSJ1" · 4 type u16 · 6 encoding u16 · 8 payload size u32 · 12 CRC-32C u32
 ///     16 first scan i64 · 24 time i64 [ns, monotonic] · 32 payload
 ///
-/// The CRC covers the head with a CRC of 0 and the payload.
+/// The first scan is 0 in entries of kHeader, kSpikes and kEnd; the time is 0 except in those of kScans and
+/// kAnchor. The CRC covers the head, its CRC taken as 0, and the payload.
 #pragma once
 
 #include <array>
@@ -32,6 +33,7 @@ enum class EntryType : std::uint16_t {
   kSecond = 10,    ///< i32: codes of the second channel of consecutive scans, −1 where none came.
 };
 
+/// Number type of the payload of kScans. Other types of entries have one format each.
 enum class Encoding : std::uint16_t { kNone = 0, kU16 = 1, kU32 = 2, kF64 = 3 };
 
 struct EntryHead {
@@ -57,7 +59,8 @@ struct Entry {
   std::span<const std::byte> payload;
 };
 
-/// The entry at the start of `bytes`; nullopt with `why` set if it is not complete.
+/// The entry at the start of `bytes`, which its payload refers to. Nullopt, with `why` set, if no complete
+/// entry with a right checksum begins there.
 [[nodiscard]] std::optional<Entry> first_entry(std::span<const std::byte> bytes, std::string& why);
 
 }  // namespace stickslip::record

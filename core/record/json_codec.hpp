@@ -1,7 +1,8 @@
 /// \file
 /// JSON codec of a journal's entries, of its end (JSON and tables), and of the runs of a sweep between
-/// processes. Doubles are restored bit for bit: finite ones have the shortest sufficient digits, NaN is null,
-/// infinities are "inf" and "-inf".
+/// processes. Doubles of fields and columns are restored bit for bit: finite ones have the shortest
+/// sufficient digits, NaN is null (its bits are lost), infinities are "inf" and "-inf". Bytes that are not
+/// UTF-8 are replaced by U+FFFD.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +20,7 @@ namespace stickslip::record {
 [[nodiscard]] std::string gap_to_json(const daq::Gap& gap);
 [[nodiscard]] std::string cycle_to_json(const detect::Cycle& cycle);
 [[nodiscard]] std::string event_to_json(const Event& event);
-/// Adds the payload of the end: JSON, a zero byte, the tables.
+/// Appends the payload of the end: JSON, a zero byte, the tables.
 void append_end_bytes(const EndRecord& end, std::vector<std::byte>& bytes);
 [[nodiscard]] std::string sweep_run_to_json(const SweepRun& run);
 

@@ -82,6 +82,8 @@ void put(Json& object, std::string_view key, const T& value) {
   }
 }
 
+/// Reads the value under a key; inverse of put(). Without the key an optional, text or column becomes empty.
+/// \throws std::invalid_argument if any other value is missing; nlohmann::json::exception for another type.
 template <typename T>
 void take(const Json& object, std::string_view key, T& value) {
   const auto found = object.find(std::string{key});
@@ -111,18 +113,20 @@ Json fields_to_json(const Fields& fields) {
   return object;
 }
 
+/// `value`, to which `text` was translated. \throws std::invalid_argument that quotes `text` if it is absent.
 template <typename Value>
 Value word(const std::string& text, std::optional<Value> value) {
   if (!value) throw std::invalid_argument(fmt::format("unknown word '{}'", text));
   return *value;
 }
 
-/// Bad UTF-8 (a configuration file may hold anything) is replaced, never a reason to lose a test.
+/// The text of a value, in one line. Bytes that are not UTF-8 (a configuration file may hold any) are
+/// replaced by U+FFFD.
 inline std::string dump(const Json& value) {
   return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// Columns of a cycle in the oldest journals; later columns may be missing.
+/// Number of columns of a cycle in the oldest journals; later columns may be missing.
 inline constexpr std::size_t kFirstCycleColumns = 15;
 
 inline std::size_t cycle_columns() {

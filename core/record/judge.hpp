@@ -11,27 +11,38 @@
 
 namespace stickslip::record {
 
+/// Judges an HDF5 file: fills in the verdict except the judgement.
 void judge_record(const GivenFile& given, const std::filesystem::path& path, Verdict& verdict);
+/// Judges a journal, read by system_calls(): fills in the verdict except the judgement, the checksums and
+/// scans_committed.
 void judge_journal(const std::filesystem::path& path, Verdict& verdict);
 
-// For records. All but the first may throw HdfError if an object is missing.
+// For records.
 
-/// Reads every data set under `file` chunk by chunk, to locate damage.
+/// Reads every data set under `file`, to locate damage: those in chunks chunk by chunk, others as a whole.
 void judge_chunks(hid_t file, Verdict& verdict);
-/// Checks the scans: order, gaps, number, checksum, and the columns computed from the counts.
+/// Judges the rows of raw: order of the scans, jumps without a gap, values that the board cannot give, and
+/// the columns computed from the others (time, force, flags, second channel). Calls judge_clocks(). Sets
+/// scans_present and sha256_found, and compares neither.
 /// \param record  everything except scans and spikes.
+/// \throws std::exception if a column is missing, unreadable or of another length, or an index out of range.
 void judge_raw(hid_t entry, const Record& record, Verdict& verdict);
 
 // For records and journals.
 
-/// Checks the order of the clock anchors and the scan rate that they imply.
-/// \param first,end  scans of the test.
+/// Judges the clock anchors. Damage: scans or monotonic times that do not rise, or, in a complete test, an
+/// anchor outside it. Incomplete: a scan rate that differs from the granted one by more than 1 % plus 5
+/// standard errors. A note: the date was set by more than 1 s, or the scans were read too late to tell the
+/// rate. Rate and date are judged only if the verdict has no damage. Call judge_status() before.
+/// \param first,end  scans of the test: [first, end).
 void judge_clocks(const Record& record, daq::ScanIndex first, daq::ScanIndex end, Verdict& verdict);
-/// Checks that the header contains the required and the recommended facts.
+/// Judges the facts of the header. Damage: no scan rate, no UUID, counts or volts without load cell, counts
+/// without polynomial. Incomplete: a record of stickslipd without its configuration. A note: a Comedi board
+/// without date of the load cell's calibration.
 void judge_facts(const RecordHeader& header, Verdict& verdict);
-/// Lists the gaps.
+/// Sets the gaps of the verdict; each makes it incomplete.
 void judge_gaps(const std::vector<daq::Gap>& gaps, Verdict& verdict);
-/// Adds the status with its reasons.
+/// Sets the status of the verdict; any but complete makes it incomplete, with the reasons.
 void judge_status(const EndRecord& end, Verdict& verdict);
 
 }  // namespace stickslip::record

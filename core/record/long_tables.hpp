@@ -1,5 +1,6 @@
 /// \file
-/// Tables with a row for each slip, written and read piece by piece, since they may exceed memory.
+/// Long tables, of cycles and modes, written and read piece by piece, since they may exceed memory. The
+/// functions throw HdfError; reading a base::LongColumn may throw std::system_error.
 #pragma once
 
 #include <fmt/format.h>
@@ -21,9 +22,9 @@ namespace stickslip::record {
 /// Rows in memory at a time: one chunk of the file, so that each chunk is compressed and decompressed once.
 inline constexpr std::size_t kRowsPerPiece = ScanSource::kPiece;
 
-/// Writes a whole column.
-/// \param column  ColumnWriter or TextColumnWriter.
-/// \param value_of  called with each row.
+/// Writes a whole column, one value for each row.
+/// \param column  ColumnWriter or TextColumnWriter, made for rows.size() rows.
+/// \param value_of  called with each row; returns its value.
 template <typename Column, typename Row, typename ValueOf>
 void write_rows(Column& column, const base::LongColumn<Row>& rows, const ValueOf& value_of) {
   std::vector<std::invoke_result_t<const ValueOf&, const Row&>> piece;
@@ -39,7 +40,7 @@ void write_rows(Column& column, const base::LongColumn<Row>& rows, const ValueOf
   pass_on();
 }
 
-/// The column of a member of each row. \return its data set, for attributes.
+/// Adds the column of one member of each row. \return its data set, for attributes.
 template <typename Row, typename Value>
 DatasetHandle write_member(TableWriter& table, const FieldName& name, const base::LongColumn<Row>& rows,
                            Value Row::*member) {
@@ -48,8 +49,8 @@ DatasetHandle write_member(TableWriter& table, const FieldName& name, const base
   return std::move(column).dataset();
 }
 
-/// One member of the rows [first, first + rows.size()) of a table; throws HdfError unless the column has as
-/// many rows as the table.
+/// Reads the column of one member into `rows`, from row `first` of the table on. Throws HdfError also if
+/// the column does not have `table_rows` rows, those of the whole table.
 template <typename Row, typename Value>
 void read_member(hid_t group, const FieldName& name, Value Row::*member, std::size_t table_rows,
                  std::size_t first, std::vector<Row>& rows) {
@@ -63,9 +64,11 @@ void read_member(hid_t group, const FieldName& name, Value Row::*member, std::si
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i].*member = values[i];
 }
 
+/// Reads a table piece by piece.
 /// \param key  column that tells how many rows there are.
-/// \param read_piece  called as read_piece(first row, rows to be filled, rows in the table).
-/// \param use  called with each row.
+/// \param read_piece  called as read_piece(first row, rows to be filled, rows in the table); once
+///        for an empty table, without rows, to check its columns.
+/// \param use  called with each row, in order.
 template <typename Row, typename ReadPiece, typename Use>
 void for_each_row(hid_t group, const std::string& key, const ReadPiece& read_piece, const Use& use) {
   const std::size_t count = row_count(group, key);

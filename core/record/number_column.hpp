@@ -1,5 +1,5 @@
 /// \file
-/// Columns of numbers in a file that is no text and no record: vectors and parts of matrices.
+/// Columns of numbers in HDF5 and MATLAB files of other programs: vectors, and rows or columns of matrices.
 #pragma once
 
 #include <cstddef>
@@ -9,38 +9,42 @@
 
 namespace stickslip::record {
 
+/// Description of a column, or of something in the file that is none. It does not hold the numbers.
 struct NumberColumn {
   std::string path;  ///< "/run1/force", "/run1/table.force", "run.force".
-  /// Of a member of a compound: the dataset, "/run1/table"; its name follows in `path` behind a point. Else
-  /// empty.
+  /// For a member of an HDF5 compound: the dataset, "/run1/table"; in `path` a point and the member's name
+  /// follow. Else empty.
   std::string dataset;
-  std::string part;  ///< "(:,2)" and "(2,:)" of a matrix; empty for a vector.
-  std::string unit;  ///< Stated beside the numbers; empty if there is none.
-  std::string why;   ///< It cannot be read, "is complex"; empty if it can.
-  std::uint64_t size = 0;
-  bool single = false;  ///< Of 24 bits of mantissa or fewer.
+  std::string part;        ///< Column "(:,2)" or row "(2,:)" of a matrix, from 1; empty for a vector.
+  std::string unit;        ///< Stated beside the numbers; empty if there is none.
+  std::string why;         ///< Why it cannot be read, such as "is complex"; empty if it can.
+  std::uint64_t size = 0;  ///< Numbers in the column; 0 if it cannot be read.
+  bool single = false;     ///< The numbers have at most 24 bits of mantissa.
 };
 
-/// More columns of one matrix are refused.
+/// Most columns of one matrix; a matrix with more is refused.
 inline constexpr std::uint64_t kMostParts = 100;
 
-/// How an array gives columns: along its longer axis.
+/// Columns of an array, which lie along the longer of its two axes; of equal ones, along the first. Axes of
+/// one element do not count. A vector is one column; its two axes here are the same.
 struct ArrayShape {
-  std::size_t long_axis = 0;
-  std::size_t short_axis = 0;
-  std::uint64_t size = 0;   ///< Numbers in a column.
-  std::uint64_t count = 0;  ///< Columns.
+  std::size_t long_axis = 0;   ///< Index of the axis in the array.
+  std::size_t short_axis = 0;  ///< Index of the axis in the array.
+  std::uint64_t size = 0;      ///< Numbers in a column.
+  std::uint64_t count = 0;     ///< Columns.
 };
 
-/// Axes of one element do not count. \param column  takes `why` if it gives no column.
+/// Columns of an array with these numbers of elements along its axes.
+/// \param column  its `why` is set if the array gives none: if it is empty, is one number, has more than two
+///        axes, or more than kMostParts columns. The shape then has no meaning.
 [[nodiscard]] ArrayShape shape_of(const std::vector<std::uint64_t>& axes, NumberColumn& column);
 
-/// Appends a column for each part of an array along its shorter axis, or `column` itself with `why` if the
-/// array has none that can be used.
+/// Appends each column of an array: `column` with size and part. Appends `column` once, with its reason in
+/// `why`, if shape_of() refuses the array.
 void add_parts(NumberColumn column, const std::vector<std::uint64_t>& axes,
                std::vector<NumberColumn>& columns);
 
-/// From 0, of a column that add_parts() gave.
+/// Number of a column of add_parts() within its matrix, from 0; 0 for a vector.
 [[nodiscard]] std::uint64_t part_number(const NumberColumn& column);
 
 }  // namespace stickslip::record

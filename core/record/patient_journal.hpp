@@ -1,14 +1,15 @@
 /// \file
-/// A journal buffered in memory. The storage thread adds entries and never accesses the disk. The disk thread
+/// Journal buffered in memory. The storage thread adds entries and never accesses the disk. The disk thread
 /// writes them, and repeats and reports failed writes.
 ///
 ///     PatientJournal journal{path, header, memory};      // touches no file
 ///     journal.add_scans(first, raw, stamp);               // storage thread: into memory
 ///     if (const auto trouble = journal.save()) …          // disk thread: written and synced, or why not
 ///
-/// If the file or its folder is removed or renamed, the journal is written again from the open file.
+/// If the file or its folder is removed or renamed, save() writes the journal again, from the open file.
 ///
-/// Entries that do not fit into memory are lost; lost scans become a gap with the cause storage-full.
+/// Entries that do not fit into memory are lost, except gaps and the end. Lost scans become a gap with the
+/// cause storage-full.
 #pragma once
 
 #include <condition_variable>
@@ -25,19 +26,20 @@
 
 namespace stickslip::record {
 
-/// Two threads: one adds, one writes.
+/// Journal of one test, for two threads: one adds, one writes.
 class PatientJournal {
  public:
-  /// \param path  created with its folders at the first write; under another name if it then exists
-  ///        (journal_name.hpp).
+  /// \param path  created with its folders at the first write; under another name if a journal or record of
+  ///        this name then exists (journal_name.hpp).
+  /// \param header  gets a uuid if it has none; must have a load cell if the board gives counts (contract).
   /// \param memory  limit of buffered entries, bytes.
   /// \param calls  must outlive the journal.
   PatientJournal(std::filesystem::path path, RecordHeader header, std::size_t memory,
                  const FileCalls& calls = system_calls());
 
-  // For the storage thread. Contracts as in EntryBuilder. \return false if lost for lack of memory.
+  // For the storage thread. Contracts as in EntryBuilder. \return false if it is lost for lack of memory.
 
-  /// \param second  codes of the second channel: as many, or none if there is no such channel.
+  /// \param second  codes of the second channel, one for each scan; empty if there is no such channel.
   bool add_scans(daq::ScanIndex first, std::span<const double> raw, const daq::ClockStamp& stamp,
                  std::span<const std::int32_t> second = {});
   bool add_true_coefficients(daq::ScanIndex first, std::span<const double> coefficient);
@@ -46,37 +48,41 @@ class PatientJournal {
   bool add_event(const Event& event);
   /// Added even if memory is full.
   void add_gap(const daq::Gap& gap);
-  /// The last entry; added even if memory is full. Its status becomes incomplete if scans were lost.
+  /// The last entry; added even if memory is full. If scans were lost, its status becomes incomplete and
+  /// their number is added to its reasons.
   void add_end(EndRecord end);
   /// Blocks until half of the memory is free, at most `longest`. \return whether it is.
   bool wait_for_room(std::chrono::milliseconds longest) const;
 
-  /// Numbers of scans accepted and lost for lack of memory so far. These and the next two functions: any
-  /// thread.
-  [[nodiscard]] std::int64_t kept_scan_count() const;
-  [[nodiscard]] std::int64_t lost_scan_count() const;
-  /// Bytes not written to the disk yet.
+  // For any thread.
+
+  [[nodiscard]] std::int64_t kept_scan_count() const;  ///< Scans added so far, without the lost ones.
+  [[nodiscard]] std::int64_t lost_scan_count() const;  ///< Scans lost so far for lack of memory.
+  /// Bytes of entries in memory: not written yet, or to be written again after a failed sync.
   [[nodiscard]] std::size_t waiting_size() const;
 
   /// Present or future path; differs from the constructor's if that was occupied.
   [[nodiscard]] std::filesystem::path path() const;
 
-  // For the disk thread. \return reason of a failure; unwritten data stay buffered.
+  // For the disk thread. \return reason of a failure; unwritten data stay buffered. Nullopt: done.
 
+  /// Writes the buffered entries, without a sync. Creates the file first, if there is none yet.
   [[nodiscard]] std::optional<std::string> write();
-  /// As ensure_at_path() and write(), followed by a sync. Data of a failed sync are written again.
+  /// ensure_at_path(), write() and a sync. After a failed sync the next call writes again all data since the
+  /// last successful one.
   [[nodiscard]] std::optional<std::string> save();
   /// Checks that the path leads to the journal. If not, writes it again, under another name if the path is
-  /// occupied. After hand_over(), an existing record suffices.
+  /// occupied. After hand_over(), an existing record suffices. Does nothing before the file is created.
   [[nodiscard]] std::optional<std::string> ensure_at_path();
   /// Number of times that the journal was written again.
   [[nodiscard]] int anew_count() const noexcept { return anew_count_; }
-  /// Whether save() has nothing to do. A journal that is not on the disk yet has its header to write.
+  /// Whether all entries are written and synced; false before the file is created. Whether the path still
+  /// leads to the file is not looked at.
   [[nodiscard]] bool saved() const { return file_ && unsynced_.empty() && waiting_size() == 0; }
-  /// After the last entry: releases the disk space reserved beyond the end, for example for the record.
+  /// Releases the disk space reserved beyond the last entry, for example for the record.
   void give_room_back();
-  /// After that: releases the lock, so that the journal can be finalised. The file stays open, to be written
-  /// again if it disappears before.
+  /// After the last entry was saved: give_room_back(), then releases the lock, so that another process can
+  /// finalise the journal. The file stays open, to be written again if it disappears before.
   void hand_over();
 
  private:

@@ -13,11 +13,13 @@
 
 namespace stickslip::record {
 
-/// Reads a record. Objects that can be computed from the raw values (results, cycles, flags), gaps and events
-/// may be missing from a reduced file, and are then absent from the record.
+/// Reads a record. A reduced file may lack results, cycles, flags, gaps, events and truth; they are then
+/// absent from the record, the results with a reason.
 /// \return the record with `end` and `sha256` set. Errors are one line that names the file and what is wrong:
-/// kUsage if it is not an HDF5 file, not a record, of another version, truncated, damaged or has data of
-/// other types or shapes; kBusy, kNoPermission or kFailure if it cannot be opened, as open_shared().
+/// kUsage if it does not exist, is no HDF5 file, no record, of a version that is not read, truncated or
+/// damaged, has data of other types or shapes, lacks the scan rate or the calibration of its counts, or has
+/// raw values that do not match their checksum; kBusy if a program is writing it; kNoPermission; kFailure if
+/// it cannot be read.
 [[nodiscard]] base::Result<Record> read_record(const std::filesystem::path& path,
                                                const FileCalls& calls = system_calls());
 
@@ -29,15 +31,16 @@ namespace stickslip::record {
                                                       std::span<const std::string> only = {},
                                                       const FileCalls& calls = system_calls());
 
-/// Reads a record without its columns: scans, cycles, gaps, events and truth stay empty. The raw values are
-/// not looked at, so neither is their checksum. Errors as read_record().
+/// Reads a record without scans, cycles, gaps, events and truth, which stay empty; clock anchors and results
+/// are read. Not verified are the checksum of the raw values, and that scan rate and calibration are there.
+/// Otherwise errors as read_record(), but damage in what is not read is not found.
 [[nodiscard]] base::Result<Record> read_facts(const std::filesystem::path& path,
                                               const FileCalls& calls = system_calls());
 
-/// Verifies a file against the record and source it was written from, piece by piece. Errors: kUsage if the
-/// file is invalid or its scans (index, raw value, code of the second channel, noise-free force where both
-/// have it) differ from the source in any bit;
-/// kFailure if it cannot be read. Of `record` only the board is compared.
+/// Verifies a file against the record and source it was written from, piece by piece. Of `record` only the
+/// quantity of the raw values and the second channel's settings are compared. Errors: kUsage if the file is
+/// invalid, if its scans differ from the source in any bit (index, raw value, code of the second channel, and
+/// noise-free force if the file has a truth), or if the source throws; kFailure if the file cannot be read.
 [[nodiscard]] base::Result<void> verify_record(const std::filesystem::path& path, const Record& record,
                                                const ScanSource& scans,
                                                const FileCalls& calls = system_calls());

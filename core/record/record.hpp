@@ -31,13 +31,14 @@ inline constexpr std::int64_t kOldestFormatVersion = 1;  ///< Oldest version tha
 /// Reason why a file of this version cannot be read, without the file's name; empty if it can.
 [[nodiscard]] std::string version_refusal(std::int64_t version);
 
-/// Completeness of a record.
+/// Completeness of a record. Gaps in the acquisition, such as overruns, do not change it.
 enum class Status {
   kComplete,     ///< The test ended and everything was written.
   kInterrupted,  ///< The program was stopped or killed before the end of the test.
-  kRecovered,    ///< Data were lost or repaired; see the reasons.
-  /// Scans could not be stored (disk full), the board went away before the end of the test, or the journal
-  /// was damaged.
+  /// The test ended and all its scans are here; unreadable bytes after the journal's end entry were dropped.
+  kRecovered,
+  /// Data are missing: the disk refused scans, the board went away before the end of the test, or a part of
+  /// the journal was damaged.
   kIncomplete,
 };
 
@@ -45,7 +46,7 @@ enum class Status {
 [[nodiscard]] std::string_view name(Status status) noexcept;
 [[nodiscard]] std::optional<Status> status_from_name(std::string_view text) noexcept;
 
-/// The tester. An unknown value is absent, never a default.
+/// The tester, as a record knows it. An unknown value is absent, never a default.
 struct TesterFacts {
   std::optional<double> sled_mass_kg;
   std::optional<double> gravity_m_per_s2;
@@ -54,7 +55,8 @@ struct TesterFacts {
   std::string speed_course;  ///< model::PullSpeed::text(); empty for a constant speed.
 
   [[nodiscard]] static TesterFacts of(const model::Tester& tester);
-  /// Conversion; absent values get model::Tester's defaults.
+  /// Conversion. An absent mass or gravity becomes model::Tester's default; absent speed and stiffness stay
+  /// absent, as does a course that cannot be parsed.
   [[nodiscard]] model::Tester tester() const;
   bool operator==(const TesterFacts&) const = default;
 };
@@ -66,7 +68,7 @@ struct CalibrationFacts {
   std::optional<double> gain_standard_error_N_per_V;
   std::optional<double> zero_standard_error_V;
   std::optional<double> residual_V;    ///< Standard deviation of the weights' readings about the line.
-  std::optional<double> hysteresis_V;  ///< As daq::LoadCellFit.
+  std::optional<double> hysteresis_V;  ///< Mean residual under falling less that under rising loads.
   std::string expires;                 ///< ISO 8601; date of expiry.
   /// Gain in use before, if this one differs from it so much that it had to be confirmed (daq::GainChange).
   std::optional<double> replaced_gain_N_per_V;
@@ -81,13 +83,14 @@ struct CalibrationFacts {
   bool operator==(const CalibrationFacts&) const = default;
 };
 
-/// Settings of the segmenter (pipeline::SegmenterSettings); absent if it was not used.
+/// Settings of the segmenter (pipeline::SegmenterSettings), which cut the test out of the scans; absent if it
+/// was not used. Coefficients are force over normal load.
 struct PlanFacts {
   std::optional<double> start_coefficient;
   std::optional<double> start_dwell_s;
   std::optional<double> pre_trigger_s;
   std::optional<double> end_coefficient;
-  std::optional<double> end_dwell_s;
+  std::optional<double> end_dwell_s;  ///< SegmenterSettings::unload_dwell_s.
   std::optional<double> no_motion_dwell_s;
   /// Level of the unloaded cell before the test, to which trigger and end are relative; absent if unknown.
   std::optional<double> unloaded_level{};
@@ -116,8 +119,8 @@ struct ProcessFacts {
   std::string version;
   std::string commit;
   std::string configuration;  ///< Complete text of the configuration file.
-  std::string estimator;      ///< estimator_of(); empty: "fit".
-  std::string method;         ///< Preset of the traditional rule.
+  std::string estimator;      ///< Name of the estimator, for estimator_of(); empty: "fit".
+  std::string method;         ///< Test method, method_text(); empty: the default method.
   std::string kept;           ///< Corrections left out, analysis::text_of(SkippedCorrections); empty: none.
   /// Complete text of the tester's characterisation file; empty: none.
   std::string characterisation;
@@ -133,13 +136,17 @@ struct ProcessFacts {
   bool operator==(const ProcessFacts&) const = default;
 };
 
-/// Known before the first scan; the first entry of a journal.
+/// What is known of a test before its first scan; the first entry of a journal.
 struct RecordHeader {
-  std::string uuid;   ///< Identifies the test for ever; JournalWriter and import make one if empty.
+  std::string uuid;   ///< Identifies the test for ever; JournalWriter and PatientJournal make one if empty.
   std::string title;  ///< For people.
-  std::optional<std::int64_t> test_number;        ///< Since the start of the program, from 1.
-  std::optional<daq::ScanIndex> trigger_scan;     ///< Where the force crossed the trigger.
-  std::optional<std::int64_t> start_realtime_ns;  ///< Since 1970, when the test began; absent if unknown.
+  /// Number of the test since the start of the program, from 1; a batch that is resumed goes on with its
+  /// numbers. Imported: number in a trace of several tests, else absent.
+  std::optional<std::int64_t> test_number;
+  /// Scan at which the force or a command began the test; absent if imported or simulated without a clock.
+  std::optional<daq::ScanIndex> trigger_scan;
+  /// Time of the trigger scan, ns since 1970; absent if unknown. Imported: of the first scan of the trace.
+  std::optional<std::int64_t> start_realtime_ns;
   daq::BoardInfo board;
   std::optional<daq::LoadCell> load_cell;  ///< Required if the board gives counts.
   CalibrationFacts calibration;
@@ -155,7 +162,7 @@ using daq::ClockAnchor;
 /// Event at a scan of the test, as text for the user.
 struct Event {
   daq::ScanIndex scan = 0;
-  std::int64_t realtime_ns = 0;
+  std::int64_t realtime_ns = 0;  ///< Since 1970.
   std::string text;
 
   bool operator==(const Event&) const = default;
@@ -163,56 +170,57 @@ struct Event {
 
 /// EndRecord::cause of a test during which the program died.
 inline constexpr std::string_view kProgramDied = "program-died";
-/// The reason for Status::kInterrupted.
+/// Element of EndRecord::reasons that goes with Status::kInterrupted.
 inline constexpr std::string_view kInterruptedWhy = "the program stopped before the end of the test";
 
-/// Known after the last scan; the last entry of a journal.
+/// What is known of a test after its last scan; the last entry of a journal.
 struct EndRecord {
   Status status = Status::kComplete;
   std::vector<std::string> reasons;  ///< Why the status is not complete.
   std::string cause;                 ///< Cause of the end: pipeline::name(EndCause), or kProgramDied.
   std::optional<std::int64_t> end_realtime_ns;  ///< realtime_at() the end of the last scan.
-  std::optional<double> compute_time_s;
+  std::optional<double> compute_time_s;         ///< Time that the evaluation took; absent if not measured.
   std::optional<daq::LatencyHistogram> read_latency;  ///< How late the blocks were read.
   /// Level of the unloaded cell at the end; absent unless the test ended by unloading with a quiet force.
   std::optional<double> unloaded_level{};
   analysis::TestResults results;
-  base::LongColumn<detect::Cycle> cycles;  ///< Final; replaces those noted during the test.
-  std::vector<daq::ScanIndex> spikes;      ///< Scans replaced for the detector, rising; final as well.
+  // Final; set_end() moves both into the record, in place of those noted during the test.
+  base::LongColumn<detect::Cycle> cycles;
+  std::vector<daq::ScanIndex> spikes;  ///< Scans replaced for the detector, rising.
   std::optional<model::TestTruth> truth;
 };
 
-/// Time of a scan since 1970, ns: start of the test plus scans at the granted rate, independent of later
-/// clock steps. Nullopt if the start is unknown or the time is out of range.
+/// Time of a scan, ns since 1970: start_realtime_ns plus the scans from trigger_scan on at the granted rate,
+/// independent of later clock steps. Nullopt if either is absent or the time is out of range.
 [[nodiscard]] std::optional<std::int64_t> realtime_at(const RecordHeader& header,
                                                       daq::ScanIndex scan) noexcept;
 
 /// Reason of a result's absence in a record of an older version.
 inline constexpr std::string_view kNoSuchResultThen = "the record was made before there was this result";
 
-/// Results of a test that could not be evaluated: all absent, with `reason`.
+/// Results of a test that could not be evaluated: all absent, regime undecided, no rung; each with `reason`.
 [[nodiscard]] analysis::TestResults absent_results(const std::string& reason);
 
 /// One test. scan and raw have equal lengths; scan rises strictly, a jump is a gap.
 struct Record {
   RecordHeader header;
   std::vector<daq::ScanIndex> scan;  ///< Index of the acquisition.
-  std::vector<double> raw;           ///< In board.quantity.
+  std::vector<double> raw;           ///< Of the quantity header.board.quantity.
   /// Noise-free force of each scan (model::TrueForce), NaN if unknown; empty if unknown for all.
   std::vector<double> true_coefficient;
   /// Code of the second channel of each scan, daq::SecondChannel::kNoCode where it did not arrive; empty
   /// unless header.board.second.
   std::vector<std::int32_t> second;
-  std::vector<daq::ScanIndex> spikes;
+  std::vector<daq::ScanIndex> spikes;  ///< Scans replaced for the detector, rising.
   std::vector<daq::Gap> gaps;
   base::LongColumn<detect::Cycle> cycles;
   std::vector<ClockAnchor> anchors;
   std::vector<Event> events;
-  std::optional<EndRecord> end;  ///< Absent only in the journal of an interrupted test; see set_end().
-  std::string sha256;            ///< Of the raw values as stored, hexadecimal; set by read_record().
+  std::optional<EndRecord> end;  ///< Absent while the test runs, and in a journal without an end.
+  std::string sha256;            ///< Stored checksum of the raw values, hexadecimal; set by reader.hpp.
 };
 
-/// Ends a record: the end's cycles and spikes become the record's.
+/// Sets record.end. Its cycles and spikes replace the record's, and are then empty in record.end.
 void set_end(Record& record, EndRecord end);
 
 /// A new random UUID (RFC 4122, version 4).

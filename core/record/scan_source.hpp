@@ -16,27 +16,30 @@
 
 namespace stickslip::record {
 
-/// Columns of equal length; scan rises strictly.
+/// Rows of a record's scans that follow each other: columns of equal length. scan rises strictly; raw is in
+/// board.quantity. Valid during the call that it is passed to.
 struct ScanPiece {
   std::span<const base::ScanIndex> scan;
   std::span<const double> raw;
 };
 
-/// Repeated calls give the same data. All functions may throw std::exception if a file is read.
+/// The scans of one record, which can be read from first to last any number of times, with equal results.
+/// Functions of a source that reads a file may throw std::exception.
 class ScanSource {
  public:
-  /// Rows of a piece, all but the last: 100 s at 350 scans/s, and a chunk of the file.
+  /// Rows of each piece but the last, which may have fewer: 100 s at 350 scans/s, and a chunk of the file.
   static constexpr std::size_t kPiece = 35'000;
 
   virtual ~ScanSource() = default;
 
   [[nodiscard]] virtual std::size_t size() const = 0;
-  /// Scan periods from the first scan to the end of the last; 0 if there is none.
+  /// Scan periods from the first scan to the end of the last, gaps included; 0 if there is no scan.
   [[nodiscard]] virtual std::int64_t extent() const = 0;
+  /// Calls `use` with each piece in order; not at all if there is no scan.
   virtual void for_each_piece(const std::function<void(const ScanPiece&)>& use) const = 0;
   /// Whether the noise-free force is available.
   [[nodiscard]] virtual bool has_force() const = 0;
-  /// Requires has_force(). As many values as scans, in pieces of the same lengths; NaN where not known.
+  /// Requires has_force(). Coefficients, as many as scans, in pieces of the same lengths; NaN where unknown.
   virtual void for_each_force_piece(const std::function<void(std::span<const double>)>& use) const = 0;
   /// Whether codes of a second channel are available.
   [[nodiscard]] virtual bool has_second() const = 0;
@@ -64,13 +67,13 @@ class RecordScans final : public ScanSource {
   const Record& record_;
 };
 
-/// Columns of equal length, but that second may be empty; they may be longer than memory.
+/// Scans as columns of equal length; `second` may be empty. Thread-bound.
 struct ScanColumns {
-  /// \param folder  as of base::LongColumn.
+  /// \param folder  of files for what exceeds a few blocks; empty: all in memory (base::LongColumn).
   explicit ScanColumns(const std::filesystem::path& folder = {})
       : scan(folder), raw(folder), second(folder) {}
 
-  /// As base::LongColumn::view().
+  /// The same columns, to be read in another thread while these are read here. Neither may grow.
   [[nodiscard]] ScanColumns view() const {
     ScanColumns view;
     view.scan = scan.view();
@@ -84,9 +87,10 @@ struct ScanColumns {
   base::LongColumn<std::int32_t> second;
 };
 
-/// Source on a range of rows of such columns.
+/// Source on a range of rows of columns. It has no noise-free force.
 class ColumnScans final : public ScanSource {
  public:
+  /// The rows [first, first + count), which must exist; the columns no longer change.
   ColumnScans(std::shared_ptr<const ScanColumns> columns, std::size_t first, std::size_t count);
 
   /// The same scans, to be read in another thread while these are read here.

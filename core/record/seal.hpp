@@ -28,15 +28,17 @@ void write_seal(hid_t entry, std::size_t scan_count);
 /// kFailure.
 [[nodiscard]] base::Result<void> seal_file(const std::filesystem::path& path, const FileCalls& calls);
 
+/// State of a file's seal.
 enum class Seal {
-  kSound,
+  kSound,   ///< The checksum matches the file.
   kBroken,  ///< At least one bit of the file is not what was published.
   kOpen,    ///< The file was left before it was sealed.
   kNone,    ///< Made by a version without seals.
 };
 
+/// Compares the whole file with the stored checksum; the number of scans is not checked.
 /// \param file  that contains `entry`.
-/// \throws HdfError if the file cannot be read.
+/// \throws HdfError if the file cannot be read, or the seal has another form than write_seal() gives it.
 [[nodiscard]] Seal check_seal(hid_t entry, const GivenFile& file);
 
 }  // namespace stickslip::record

@@ -10,16 +10,17 @@
 
 namespace stickslip::record {
 
-/// Throws HdfError where the algorithm is not available.
+/// Computes one digest. Functions throw HdfError if OpenSSL does not provide the algorithm.
 class Sha256 {
  public:
   Sha256();
 
+  /// Adds the bytes of the values as they are in memory.
   template <typename T>
   void add(std::span<const T> values) {
     add_bytes(std::as_bytes(values));
   }
-  /// Once, at the end.
+  /// The digest, 64 lower-case hexadecimal digits. To be called once, after the last add().
   [[nodiscard]] std::string hexadecimal();
 
  private:

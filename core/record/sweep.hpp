@@ -1,6 +1,6 @@
 /// \file
-/// Results of a sweep: a scene run several times at every point of a grid. Runs are numbered from 0 on,
-/// repetitions of one point first, the last axis next.
+/// Results of a sweep: a scene run several times at every point of a grid. Runs and points are numbered from
+/// 0: run = point · repeat + repetition. From point to point, the value of the last axis changes first.
 #pragma once
 
 #include <cstddef>
@@ -19,10 +19,10 @@ namespace stickslip::record {
 
 /// One varied key of the scene.
 struct SweepAxis {
-  std::string key;                 ///< Its dotted path.
-  std::string unit;                ///< Of the values, as it was asked for; "1" if there is none.
-  std::vector<double> values;      ///< In this unit; for words 0, 1, …
-  std::vector<std::string> words;  ///< Texts that the values number; empty for numeric values.
+  std::string key;                 ///< Dotted path in the scene.
+  std::string unit;                ///< Unit of the values, as the user gave it, need not be SI; "1": none.
+  std::vector<double> values;      ///< In `unit`; if the values are texts: 0, 1, …
+  std::vector<std::string> words;  ///< The texts, in the order of `values`; empty for numbers.
 
   bool operator==(const SweepAxis&) const = default;
 };
@@ -32,20 +32,22 @@ struct SweepFacts {
   std::string version;     ///< Of the program.
   std::string commit;      ///< Of the program.
   std::string command;     ///< Without options that do not affect results: output, threads.
-  std::string method;      ///< Preset of the traditional rule.
-  std::string scene_name;  ///< Of the file.
+  std::string method;      ///< Test method, method_text().
+  std::string scene_name;  ///< Name of the scene.
   std::string scene_text;  ///< Complete text of the scene at the first point.
-  std::uint64_t seed = 0;  ///< Base seed; each run's seed follows from it and the run's number.
+  /// Base seed of the first point. A run's seed follows from its point's base seed and the run's number.
+  std::uint64_t seed = 0;
   std::vector<SweepAxis> axes;
   std::int64_t repeat = 1;  ///< Runs at each point; at least 1.
 
+  /// Product of the numbers of values; 1 without axes.
   [[nodiscard]] std::int64_t point_count() const noexcept;
   [[nodiscard]] std::int64_t run_count() const noexcept { return point_count() * repeat; }
-  /// Index along each axis.
+  /// Index of the point's value on each axis. \param point  0 … point_count() − 1.
   [[nodiscard]] std::vector<std::size_t> indices_of(std::int64_t point) const;
 };
 
-/// One run; its truth has no lists and texts.
+/// One run. Its truth has no modes, no cycles and no texts.
 struct SweepRun {
   std::int64_t number = 0;
   analysis::TestResults results;
@@ -53,38 +55,42 @@ struct SweepRun {
   std::int64_t true_cycle_count = 0;  ///< Number of true slips, including those after the pull.
 };
 
-/// The runs by columns: about 700 bytes each.
+/// The runs by columns, about 1.1 kB for each run. Row i of each column belongs to run i. Until set() is
+/// called for a run, its numbers are NaN and its indices 0.
 class SweepTable {
  public:
+  /// A result of all runs.
   struct Result {
     analysis::ResultName name;
     std::vector<double> value;                   ///< NaN where there is none.
     std::vector<double> standard_error;          ///< NaN where there is none.
     std::vector<double> systematic_uncertainty;  ///< NaN where there is none.
-    std::vector<std::uint32_t> reason;           ///< Why there is no value: index of reasons().
+    std::vector<std::uint32_t> reason;           ///< Why there is no value: index into reasons().
   };
+  /// A number of the truth of all runs, also delta_mu (S − K) and cycle_count.
   struct Truth {
     FieldName name;
     std::vector<double> value;  ///< NaN where there is none.
   };
 
+  /// \param run_count  > 0.
   explicit SweepTable(std::int64_t run_count);
 
-  /// \param run  with a number below run_count.
+  /// Fills the row of a run. \param run  number: 0 … run_count() − 1.
   void set(const SweepRun& run);
 
   [[nodiscard]] std::size_t run_count() const noexcept { return regime_.size(); }
   [[nodiscard]] const std::vector<Result>& results() const noexcept { return results_; }
   [[nodiscard]] const std::vector<Truth>& truths() const noexcept { return truths_; }
-  /// \param name must be that of a result or truth.
+  /// \param name  must be that of a result, or of a truth for truth().
   [[nodiscard]] const Result& result(std::string_view name) const;
   [[nodiscard]] const Truth& truth(std::string_view name) const;
-  /// Distinct reasons; the first is empty and means that there is a value.
+  /// Distinct reasons; the first is empty, for results with a value.
   [[nodiscard]] const std::deque<std::string>& reasons() const noexcept { return reasons_; }
-  /// Indices of model::kRegimeNames.
+  /// Index into model::kRegimeNames for each run.
   [[nodiscard]] const std::vector<std::uint8_t>& regime() const noexcept { return regime_; }
   [[nodiscard]] const std::vector<std::uint8_t>& true_regime() const noexcept { return true_regime_; }
-  /// Indices of analysis::kRungNames.
+  /// Index into analysis::kRungNames for each run.
   [[nodiscard]] const std::vector<std::uint8_t>& rung() const noexcept { return rung_; }
   [[nodiscard]] const std::vector<std::uint64_t>& seed() const noexcept { return seed_; }
 

@@ -17,9 +17,10 @@ namespace stickslip::record {
 [[nodiscard]] std::string tester_text(const analysis::Characterisation& characterisation,
                                       std::string_view date);
 
-/// Reads a characterisation file. Errors: kUsage with file and line.
+/// Reads ω and γ/2ω with their covariance from a characterisation file. Errors: kUsage, with file and, for an
+/// error in the text, line.
 [[nodiscard]] base::Result<estimate::SharedPrior::Coupling> load_tester(const std::filesystem::path& file);
-/// Parses the text of a characterisation file. \param name  stands for the file in messages.
+/// As load_tester(), from the text of a file. \param name  stands for the file in messages.
 [[nodiscard]] base::Result<estimate::SharedPrior::Coupling> parse_tester(std::string_view text,
                                                                          std::string_view name);
 

@@ -18,15 +18,19 @@
 
 namespace stickslip::record {
 
+/// The judgement about a file: of a record or journal, by the worst of its findings.
 enum class Judgement {
-  kComplete,    ///< A finished record: everything is there and agrees with everything else.
-  kIncomplete,  ///< Undamaged, but data are missing; the file states the reason.
-  kDamaged,     ///< Checksums or contents are inconsistent, or the file is truncated.
-  kNotJudged,   ///< The file does not exist, has an unknown kind or version, or cannot be read.
+  kComplete,  ///< A finished record: everything is there and agrees with everything else.
+  /// Undamaged, but data are missing or not reliable: a gap, a status other than complete, no seal, a record
+  /// of stickslipd without configuration, clocks that contradict the scan rate; and every journal.
+  kIncomplete,
+  kDamaged,    ///< Checksums or contents are inconsistent, or the file is truncated.
+  kNotJudged,  ///< The file does not exist, has an unknown kind or version, or cannot be read now.
 };
 
 [[nodiscard]] std::string_view name(Judgement judgement) noexcept;
 
+/// One observation about a file.
 struct Finding {
   /// A note does not change the judgement.
   enum class Weight { kNote, kIncomplete, kDamage };
@@ -39,16 +43,17 @@ struct Finding {
 
 [[nodiscard]] std::string_view name(Finding::Weight weight) noexcept;
 
+/// The judgement about a file, with what led to it. A member that is unknown is absent or empty.
 struct Verdict {
   Judgement judgement = Judgement::kNotJudged;
   std::string kind;  ///< "record" or "journal"; empty if it is neither.
   std::optional<std::int64_t> format_version;
-  std::optional<std::int64_t> scans_present;
-  std::optional<std::int64_t> scans_committed;  ///< Number counted by the finaliser.
-  std::string status;                           ///< Status stated in the file.
+  std::optional<std::int64_t> scans_present;    ///< Number of scans that could be read.
+  std::optional<std::int64_t> scans_committed;  ///< Number of scans that a record says were written.
+  std::string status;                           ///< Name of the Status that the file states.
   std::vector<daq::Gap> gaps;
-  std::string sha256_stored;  ///< Checksum of the raw values stored in the file.
-  std::string sha256_found;   ///< Checksum computed from the raw values.
+  std::string sha256_stored;  ///< Checksum of the raw values stored in a record.
+  std::string sha256_found;   ///< Checksum computed from the raw values of a record.
   std::vector<Finding> findings;
 
   void note(std::string_view place, std::string_view text) { add(Finding::Weight::kNote, place, text); }
@@ -65,7 +70,9 @@ struct Verdict {
 };
 
 /// Judges any file: reads every byte of a record and every entry of a journal. A malicious file may crash
-/// HDF5, so judge untrusted files in a separate process (io/verify.hpp). Throws only std::bad_alloc.
+/// HDF5, so judge untrusted files in a separate process (io/verify.hpp). Throws only std::bad_alloc; memory
+/// that lacks while a record is judged may also become a finding of damage.
+/// \param calls  for tests; the entries of a journal are read by the system's.
 [[nodiscard]] Verdict judge(const std::filesystem::path& path, const FileCalls& calls = system_calls());
 
 }  // namespace stickslip::record

@@ -16,7 +16,7 @@ inline constexpr std::size_t kCubicWindow = 7;
 inline constexpr double kOutlierSigmas = 5.0;
 
 /// Fast path: true if the window certainly has no outlier, since its misfit to a cubic is below
-/// kOutlierSigmas. Computed from the orthogonal polynomials of degree 4, 5 and 6 over seven points [Fisher
+/// kOutlierSigmas σ. Computed from the orthogonal polynomials of degree 4, 5 and 6 over seven points [Fisher
 /// and Yates, Statistical Tables, 1938]. Within rounding errors of the limit it returns false;
 /// cubic_outlier() then decides.
 [[nodiscard]] inline bool follows_a_cubic(std::span<const double, kCubicWindow> v, double sigma) noexcept {
@@ -37,8 +37,8 @@ inline constexpr double kOutlierSigmas = 5.0;
 /// outlier. The corner of a level and a steep line has none. Values before the middle must be repaired
 /// already.
 /// \param sigma  standard deviation of the noise of one value.
-/// \return height of the outlier, to be subtracted from the middle; nullopt if it is none or if the result is
-/// ambiguous.
+/// \return height of the outlier, to be subtracted from the middle; nullopt if it is none. One candidate or
+/// two must explain 95 % of the misfit, or all but what noise leaves.
 [[nodiscard]] std::optional<double> cubic_outlier(std::span<const double, kCubicWindow> window,
                                                   double sigma) noexcept;
 

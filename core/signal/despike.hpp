@@ -15,14 +15,14 @@
 
 namespace stickslip::signal {
 
-/// A scan after the filter, in the order of the input.
+/// A scan as the filter returns it; scans come in the order of the input.
 struct DespikedScan {
-  double value = 0.0;  ///< As measured, or what its neighbours have there if it is a spike: their cubic, or
-                       ///< their median.
+  double value = 0.0;  ///< As measured; of a spike the replacement: the cubic through its neighbours, or the
+                       ///< median of it and its neighbours.
   bool spike = false;
 };
 
-/// Detects spikes by two tests; a scan that either of them finds is a spike.
+/// Filter that replaces spikes. It has two tests; a scan that either of them finds is a spike.
 ///
 /// Hampel identifier over five scans [Hampel, J. Am. Stat. Assoc. 69 (1974) 383]: a scan is a
 /// spike if it is farther from the median of itself and two neighbours on each side than three
@@ -37,11 +37,12 @@ struct DespikedScan {
 /// Corners, steps and oscillations with at least 5 scans a cycle fail the last condition (with fewer, the
 /// estimated noise is that of the oscillation). Scans before the middle enter repaired.
 ///
-/// The delay is three scans. The three scans at each end are tested by the first test only. Does not
-/// allocate.
+/// The delay is three scans. The three scans at each end are tested by the first test only; a trace of
+/// fewer than three is not tested. Does not allocate.
 class Despiker {
  public:
-  /// \param sigma  standard deviation of the noise of one scan (NoiseEstimator).
+  /// Takes the next scan. \param sigma  standard deviation of the noise of one scan (NoiseEstimator).
+  /// \return the scan three before it; nullopt for the first three.
   [[nodiscard]] std::optional<DespikedScan> add(double value, double sigma) noexcept {
     window_.push(value);
     if (size_ == kWidth) return judge_middle(sigma);

@@ -1,13 +1,13 @@
 /// \file
-/// Values that repeat more often than the noise of a scan lets them: a flat top, where an amplifier clips,
-/// and a frozen value. And the noise in steps of the converter.
+/// Detection of values that repeat more often than the noise of a scan lets them: a flat top, where an
+/// amplifier clips, and a frozen value. Also the noise in steps of the converter.
 ///
 ///     if (const auto top = flat_top(values, left_out, step)) …
 ///
-/// Noise: white on single scans, of standard deviation σ; beneath it the signal may be anything. Two scans in
-/// a row then lie in the same band of width w with probability p ≤ erf(w/(2√2 σ)), as no level of the signal
-/// makes a band more likely than the level in its middle. σ is that of the quietest stretch elsewhere, so
-/// that a bench whose noise comes with its motor is not taken for a fault, and less the noise of rounding.
+/// The noise is taken as white on single scans, of standard deviation σ; the signal beneath it may be
+/// anything. A scan then lies in a band of width w with probability p ≤ erf(w/(2√2 σ)), as no level of the
+/// signal makes a band more likely than the level in its middle. σ is that of the quietest stretch outside
+/// the band, less a margin and the noise of rounding: noise that comes with a motor is not taken for a fault.
 #pragma once
 
 #include <cstddef>
@@ -18,45 +18,50 @@
 
 namespace stickslip::signal {
 
-/// Largest probability that a test without a fault has one of these findings.
+/// Largest probability of finding a flat top, and of finding a frozen value, in a test without that fault.
 inline constexpr double kFalseAlarm = 1e-6;
 
-/// Whether a scan is left out: a spike, or at a rail of the converter.
+/// Whether a scan is left out: a spike, or at a rail of the converter. \param scan  index of its value.
 using LeftOut = std::function<bool(std::size_t scan)>;
 
-/// Scans that are equal, or nearly so.
+/// Scans of equal or nearly equal values.
 struct HeldValues {
-  double lowest = 0.0;
-  double highest = 0.0;
+  double lowest = 0.0;   ///< Lower end of the band of values.
+  double highest = 0.0;  ///< Upper end.
   std::size_t scan_count = 0;
-  std::size_t run_count = 0;  ///< Stretches of scans without another value between them.
-  std::size_t first = 0;      ///< Scan at which the longest stretch begins.
-  std::size_t longest = 0;    ///< Its scans.
+  std::size_t run_count = 0;  ///< Stretches of consecutive scans in the band.
+  std::size_t first = 0;      ///< Index of the first value of the longest stretch.
+  std::size_t longest = 0;    ///< Number of scans in it.
 
   [[nodiscard]] bool holds(double value) const noexcept { return value >= lowest && value <= highest; }
 };
 
-/// The highest level of the trace if scans stay there more often than noise lets them. Of T scans in a band
-/// below the largest, C are followed by another one; noise alone does so with probability exp(−T·KL(C/T, p))
-/// at most [Chernoff 1952], for each of as many largest values and counts T as there are scans, and for five
-/// bands: equal values, two steps, σ/4, σ and 2 σ. A clipped signal that gets as much noise behind the
-/// amplifier as before it is not told from a sound one.
-/// \param step  of the converter, or the smallest difference of neighbours as measured; nothing is found
-/// unless it is positive.
+/// Finds the highest level of the trace if scans stay there more often than noise lets them. Of T scans in a
+/// band below the largest value, C are followed by another scan in it. Noise alone does so with probability
+/// exp(−T·KL(C/T, p)) at most [Chernoff 1952]. Multiplied by N² (any of N scans may be the largest, and T any
+/// number up to N) and by the five bands, this must not exceed kFalseAlarm. The bands are equal values, two
+/// steps, σ/4, σ and 2 σ; the result is the one with the most scans. A clipped signal that gets as much noise
+/// behind the amplifier as before it is not told from a sound one.
+/// \param step  of the converter, or the smallest difference of neighbours as measured.
+/// \return nullopt if there is none; also unless the largest value and the step are positive.
 [[nodiscard]] std::optional<HeldValues> flat_top(const base::LongColumn<double>& values,
                                                  const LeftOut& left_out, double step);
 
-/// The longest run of equal values above a third of the largest, if noise does not let it be so long: n in a
-/// row happen among N scans with probability N n p^(n − 1) at most. An unloaded cell may be quieter than a
-/// pull.
+/// Finds the longest run of equal values if noise does not let it be so long: n in a row happen among N scans
+/// with probability N n p^(n − 1) at most, which must not exceed kFalseAlarm. Only values of at least a third
+/// of the largest count, since an unloaded cell may be quieter than a pull.
+/// \param step  as for flat_top().
+/// \return nullopt if there is none of at least 16 scans; also unless largest value and step are positive.
 [[nodiscard]] std::optional<HeldValues> frozen_values(const base::LongColumn<double>& values,
                                                       const LeftOut& left_out, double step);
 
-/// White noise of a scan in steps of the converter, less that of rounding, where the force is above a third
-/// of the largest; nullopt if fewer than eight blocks of scans tell it, or if no converter is seen. Noise of
-/// half a step reads below a quarter with a probability of 1e-6: half of the blocks would have to be off by
-/// three standard deviations.
-/// \param held  scans to leave out; nullopt: none.
+/// White noise of a scan, as a standard deviation in steps of the converter, less that of rounding; from the
+/// values of at least a third of the largest. Half a step reads below a quarter with a probability < 1e-6.
+/// \param step  of the converter; ≤ 0 if unknown. It is then the smallest difference of neighbours, if all
+/// their differences are multiples of that and a tenth of them is zero.
+/// \param held  values to leave out; nullopt: none.
+/// \return nullopt if there are fewer than eight blocks of 64 fourth differences, if no value is positive, or
+/// if the step stays unknown.
 [[nodiscard]] std::optional<double> noise_in_steps(const base::LongColumn<double>& values,
                                                    const LeftOut& left_out, double step,
                                                    const std::optional<HeldValues>& held);

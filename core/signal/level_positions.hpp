@@ -53,6 +53,7 @@ class Stairs {
       push_into_cells({position, value});
     }
   }
+  /// Removes the last step. Requires !empty().
   void pop() noexcept { --size_; }
 
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
@@ -75,7 +76,7 @@ class Stairs {
   std::size_t size_ = 0;
 };
 
-/// The last position with a value above a level.
+/// Finds the last position with a value above a level.
 class LastAbove {
  public:
   [[nodiscard]] bool empty() const noexcept { return stairs_.empty(); }
@@ -94,7 +95,7 @@ class LastAbove {
   Stairs stairs_{Stairs::Keep::kFirst};
 };
 
-/// The first position with a value below a level.
+/// Finds the first position with a value below a level.
 class FirstBelow {
  public:
   void clear() noexcept { stairs_.clear(); }

@@ -70,7 +70,7 @@ template <typename Value>
   return *nth;
 }
 
-/// Upper median of value(0) … value(count − 1), as nth_of().
+/// Upper median of value(0) … value(count − 1), by nth_of(). \param count  > 0.
 template <typename Value>
 [[nodiscard]] double median_of(std::size_t count, const Value& value) {
   return nth_of(count, count / 2, value);
@@ -102,7 +102,7 @@ struct RunningVariance {
   }
   /// Variance with divisor n − 1; 0 for fewer than two values.
   [[nodiscard]] double variance() const noexcept { return count > 1.0 ? square_sum / (count - 1.0) : 0.0; }
-  /// Standard error of the mean. Requires at least one value.
+  /// Standard error of the mean; 0 for one value. Requires at least one.
   [[nodiscard]] double error_of_mean() const noexcept { return std::sqrt(variance() / count); }
 };
 

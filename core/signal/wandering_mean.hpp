@@ -13,12 +13,13 @@
 
 namespace stickslip::signal {
 
-/// The values are white noise, or wander as an Ornstein–Uhlenbeck process with white noise: covariance of
-/// values i and j V = (1 − w) e^(−|i−j|/τ) + w δ_ij, in units of the variance. The error is the average over
-/// w and τ, weighted by their posterior probabilities [Gelman et al., Bayesian Data Analysis, 3rd ed., 2013,
-/// section 7.6]; white noise has four fifths of the prior, so that independent values have the error of
-/// textbooks but for a few per cent. It is never below that. From kMost values on, neighbours are averaged,
-/// so that memory and time are bounded. Never allocates.
+/// Mean of a sequence of values, and its standard error. The values are taken as white noise, or as an
+/// Ornstein–Uhlenbeck process with white noise: covariance of values i and j
+/// V = (1 − w) e^(−|i−j|/τ) + w δ_ij, in units of the variance. The error is the average over w and τ,
+/// weighted by their posterior probabilities [Gelman et al., Bayesian Data Analysis, 3rd ed., 2013,
+/// section 7.6]. White noise has four fifths of the prior, so that independent values have the textbook error
+/// √(variance/n) but for a few per cent; the error is never below that. From kMost values on, neighbours are
+/// averaged, so that memory and time are bounded. Never allocates.
 class WanderingMean {
  public:
   static constexpr std::size_t kMost = 512;
@@ -26,9 +27,9 @@ class WanderingMean {
   void add(double value) noexcept;
   [[nodiscard]] double count() const noexcept { return values_.count; }
   [[nodiscard]] double mean() const noexcept { return values_.mean; }
-  /// Of the values; divisor n − 1.
+  /// Variance of the values, with divisor n − 1; 0 for fewer than two.
   [[nodiscard]] double variance() const noexcept { return values_.variance(); }
-  /// Standard error of mean(). Requires at least one value.
+  /// Standard error of mean(); the textbook error for fewer than eight values, 0 for fewer than two.
   [[nodiscard]] double error_of_mean() const noexcept;
 
  private:

@@ -19,10 +19,11 @@ namespace stickslip::signal {
 /// of three scans and more: the autocorrelation of n of them is 0 ± √(1.94/n) [Bartlett 1946, with −2/3 and
 /// 1/6 at lags 1 and 2]. An oscillation gives a positive maximum after negative values, at the lag nearest to
 /// its period and as high as its share of the power. The maximum must exceed one half and five standard
-/// deviations. Differences are clipped at one and a half times their median, so that spikes cannot mask an
-/// oscillation.
+/// deviations. Differences are clipped at one and a half times their median magnitude, so that spikes cannot
+/// mask an oscillation.
 /// \tparam Values  any range of double.
 /// \param floor  noise of a scan by rounding alone.
+/// \return false also for fewer than 13 values, and if the noise is not above `floor`.
 template <typename Values>
 [[nodiscard]] bool hides_an_oscillation(const Values& values, double floor) {
   constexpr std::size_t kLags = 10;

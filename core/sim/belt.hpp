@@ -13,19 +13,20 @@
 
 namespace stickslip::sim {
 
-/// v(t) of a segment, m/s. Starts at exactly speed + decaying_speed.
+/// Speed of a segment, m/s, as a function of the time in s after its start; its duration is ignored. At 0 it
+/// is exactly speed + decaying_speed, thus 0 for a motor that starts from rest.
 [[nodiscard]] ExponentialPolynomial belt_speed(const BeltSegment& segment);
 
-/// Belt speed at a time ≥ 0 of the scene; at the border of two segments, that of the later. Ignores
-/// halt_when_unloaded.
+/// Belt speed, m/s, at this time ≥ 0 after scan 0: at the border of two segments that of the later, after the
+/// last segment 0. Ignores halt_when_unloaded.
 [[nodiscard]] double belt_speed_m_per_s(const std::vector<BeltSegment>& belt, double time_s);
 
-/// Smallest and largest travel ∫v dt of the belt within this time, m: (≤ 0, ≥ 0). Ignores halt_when_unloaded,
-/// so the true range may be narrower.
+/// Smallest (≤ 0) and largest (≥ 0) net travel ∫v dt of the belt, m, from scan 0 to any time up to
+/// duration_s. Ignores halt_when_unloaded, so the true range may be narrower.
 [[nodiscard]] std::pair<double, double> belt_travel_range_m(const std::vector<BeltSegment>& belt,
                                                             double duration_s);
 
-/// f(x) of a drift, x in s or m.
+/// Factor f(x) of K. \param x  time since scan 0, s, or net belt travel since then, m, as drift.over says.
 [[nodiscard]] double drift_factor(const KineticDrift& drift, double x);
 
 }  // namespace stickslip::sim

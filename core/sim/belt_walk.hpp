@@ -21,7 +21,7 @@ class BeltWalk {
         scan_rate_Hz_(scan_rate_Hz),
         factor_(motion.oscillator.omega0_squared() / motion.gravity_m_per_s2) {}
 
-  /// Returns to the state before the first segment: at rest, ending at scan 0.
+  /// Returns to the state before the first segment: the belt rests, and segment_end() is scan 0.
   void restart() noexcept {
     next_ = 0;
     segment_ = {};
@@ -30,7 +30,7 @@ class BeltWalk {
     travel_ = 0.0;
   }
 
-  /// To be called at the end of the present segment.
+  /// Enters the next segment, at segment_end(). After the last one the belt rests until kForEver.
   void next_segment() noexcept {
     travel_ = travel(end_);
     start_ = end_;
@@ -43,14 +43,14 @@ class BeltWalk {
     end_ = start_.later(segment_.duration_s * scan_rate_Hz_);
   }
 
-  /// Stops the belt for the rest of the segment.
+  /// Stops the belt from now to segment_end().
   void halt(const ScanTime& now) noexcept {
     travel_ = travel(now);
     start_ = now;
     segment_ = {};
   }
 
-  /// Before the first call of next_segment().
+  /// Whether no segment has begun since restart().
   [[nodiscard]] bool before_first() const noexcept { return next_ == 0; }
   [[nodiscard]] bool halts_when_unloaded() const noexcept { return segment_.halt_when_unloaded; }
   [[nodiscard]] const ScanTime& segment_end() const noexcept { return end_; }
@@ -62,7 +62,7 @@ class BeltWalk {
   [[nodiscard]] BeltRate from(const ScanTime& now) const noexcept {
     return BeltRate::of(segment_, factor_, elapsed_s(now));
   }
-  /// Net belt travel since scan 0, in units of the coefficient.
+  /// Net belt travel from scan 0 to now, as a coefficient: ω₀²/g times the travel in m.
   [[nodiscard]] double travel(const ScanTime& now) const noexcept {
     return travel_ + BeltRate::of(segment_, factor_, 0.0).travel(elapsed_s(now));
   }
@@ -82,23 +82,25 @@ class BeltWalk {
   double travel_ = 0.0;  ///< Up to start_.
 };
 
-/// The factor f of K (KineticDrift) over a piece of the motion.
+/// Factor f of K (KineticDrift) during a piece of the motion; times count from the start of the piece.
 struct DriftFactor {
   std::optional<KineticDrift> drift;
-  double x = 0.0;        ///< x at the start of the piece, in units of the drift's scale.
-  double x_per_s = 0.0;  ///< Of a drift over time,
-  double x_per_c = 0.0;  ///< of one over belt travel: in units of the coefficient.
+  double x = 0.0;        ///< x at the start of the piece, over the drift's scale.
+  double x_per_s = 0.0;  ///< 1/scale of a drift over time, 1/s; else 0.
+  double x_per_c = 0.0;  ///< g/(ω₀² scale) of a drift over belt travel: the travel is a coefficient; else 0.
   BeltRate belt;
 
+  /// f(t); 1 without a drift.
   [[nodiscard]] double factor(double t_s) const noexcept {
     if (!drift) return 1.0;
     const double at = x + x_per_s * t_s + (x_per_c != 0.0 ? x_per_c * belt.travel(t_s) : 0.0);
     return 1.0 + drift->change * (linear() ? at : -std::expm1(-at));
   }
+  /// f′(t), 1/s.
   [[nodiscard]] double slope(double t_s) const noexcept {
     return drift ? drift->change * decay(t_s) * (x_per_s + x_per_c * belt.at(t_s)) : 0.0;
   }
-  /// Largest |f″| for from ≤ t ≤ to.
+  /// Upper bound of |f″| for from ≤ t ≤ to, 1/s²; it need not be reached.
   [[nodiscard]] double most_curvature(double from_s, double to_s) const noexcept {
     if (!drift) return 0.0;
     const double bend = x_per_c * (x_per_c != 0.0 ? belt.most_slope(from_s, to_s) : 0.0);

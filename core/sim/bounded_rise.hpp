@@ -9,17 +9,17 @@
 
 namespace stickslip::sim {
 
-/// First t ≥ 0 at which f reaches zero from below.
+/// First t ≥ 0 at which f reaches zero from below; 0 if f(0) > 0; nullopt if there is none up to longest_s.
 ///
 /// Over each interval f lies below the parabola with its value and slope at the start and the largest second
 /// derivative in it. So f has no zero before that of the parabola, which is the next point. The points
 /// converge to a simple zero like Newton's method, never pass it, and miss no touching of zero.
 ///
-/// \param f          value(t), slope(t), and bend(from, to) ≥ the second derivative in between.
-///                   f(0) = 0 is no event if f falls at first.
-/// \param longest_s  end of the search; may be very long.
-/// \param stretch_s  > 0, length of the first interval; later ones are longer.
-/// \param rounding   ≥ 0: a value of f within this of zero counts as zero.
+/// \param f          value(t), its derivative slope(t), and bend(from, to) ≥ its second derivative there.
+///                   f(0) = 0 does not count if f falls at first.
+/// \param longest_s  end of the search; may be very long, but finite.
+/// \param stretch_s  > 0, length of the first interval; later ones may be longer.
+/// \param rounding   ≥ 0: for t > 0 a value of at least −rounding counts as zero.
 template <typename Function>
 [[nodiscard]] std::optional<double> bounded_rise_s(const Function& f, double longest_s, double stretch_s,
                                                    double rounding) {

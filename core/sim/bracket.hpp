@@ -9,9 +9,10 @@
 
 namespace stickslip::sim {
 
-/// [Algorithm 748: Alefeld, Potra and Shi, ACM TOMS 21(3):327–344, 1995]
-/// \param excess    monotone between low and high, from at most zero to at least zero.
-/// \return `low` or `high` where rounding, or grazing, leaves no change of sign.
+/// Zero of a rising function between low and high, to the last bits of a double. [Algorithm 748: Alefeld,
+/// Potra and Shi, ACM TOMS 21(3):327–344, 1995]
+/// \param excess  rises monotonically from ≤ 0 at low to ≥ 0 at high, but for rounding.
+/// \return low if excess(low) ≥ 0, else high if excess(high) ≤ 0, else the zero.
 template <typename Function>
 [[nodiscard]] double rise_between(const Function& excess, double low, double high) {
   using Quiet = boost::math::policies::policy<

@@ -13,18 +13,20 @@
 
 namespace stickslip::sim {
 
+/// Instants of a clock with independent normal errors. Call restart() first.
 class JitteringClock {
  public:
   static constexpr std::string_view kName = "clock_jitter";
 
+  /// \param scan_rate_Hz  true.
   JitteringClock(const ClockJitter& settings, double scan_rate_Hz)
       : sd_scans_(settings.sd_s * scan_rate_Hz) {}
 
   void restart(std::uint64_t seed);
 
   /// Instant of a scan. Call for all scans in order, from 0 on. Instants are clipped so that none lies before
-  /// the start or the one before; with a standard deviation of up to a tenth of a scan period this affects
-  /// deviations of seven standard deviations only.
+  /// the start or the one before. So scan 0 is never early. Later scans are clipped only by deviations of
+  /// seven standard deviations or more, if the standard deviation is at most a tenth of a scan period.
   [[nodiscard]] ScanTime instant(std::int64_t scan);
 
  private:

@@ -22,13 +22,13 @@ inline constexpr int kMaxOdeEvents = 3;
 /// State of a system; components beyond its size are ignored.
 using OdeState = std::array<double, kMaxOdeSize>;
 
-/// y′ = rate(t, y), with events where a function of t and y rises to zero.
+/// System of equations y′ = rate(t, y), with events where a function of t and y rises to zero.
 class OdeSystem {
  public:
   struct Event {
     double value = -1.0;  ///< Below zero before the event; −1 for an unused event.
-    double slope = 0.0;   ///< Its derivative along the motion, 1/s
-    /// Expected error of `value` at an extreme; an extreme closer to zero than this is undecided.
+    double slope = 0.0;   ///< Derivative of `value` along the motion, 1/s; always 0: no extremes are sought.
+    /// Expected error of `value` at an extreme; an extreme closer to zero counts in undecided_count().
     double doubt = 0.0;
   };
   using Events = std::array<Event, kMaxOdeEvents>;
@@ -43,7 +43,7 @@ class OdeSystem {
 /// Integrator with complete event detection. CVODE finds an event only if its sign differs at the ends of a
 /// step. This class also finds one at an extreme inside the step, located where the slope changes its sign,
 /// and one that is zero at the start and falls first. An extreme exactly at zero is an event. No event is
-/// missed while steps are not longer than the time between two extremes.
+/// missed while steps (set_longest_step()) are not longer than the time between two extremes.
 ///
 /// Allocates when constructed; not afterwards, as far as CVODE itself does not. Thread-bound.
 class Cvode {
@@ -57,34 +57,34 @@ class Cvode {
     std::optional<std::size_t> event;  ///< Index of the first event in the step, which is exactly at t_s.
   };
 
-  /// \param system  outlives this. \param size  of its state. \param timescale_s > 0; of the first step.
+  /// \param system  outlives this. \param size  of its state, 1 … kMaxOdeSize.
+  /// \param timescale_s > 0, from which CVODE finds its first step.
   Cvode(Method method, const OdeSystem& system, int size, double timescale_s);
   ~Cvode();
   Cvode(const Cvode&) = delete;
   Cvode& operator=(const Cvode&) = delete;
 
-  /// \param tolerance > 0, of each variable; the local error of a step. Call before restart().
+  /// Sets the absolute local error of each variable, > 0, that a step may have. Call before restart().
   void set_tolerance(const OdeState& tolerance);
   void set_longest_step(double longest_s);
 
-  /// Starts again at t = 0 with this state.
+  /// Starts again at t = 0 with this state. Widened tolerances and the counts stay.
   void restart(const OdeState& state);
 
   /// Takes one internal step, or the part of it up to an event; the next call takes the rest, or restart()
-  /// begins another motion there. If CVODE fails,
-  /// it is restarted from the last good point with ten times the tolerance.
-  /// \throws std::runtime_error if it fails with 10⁶ times the tolerance too.
+  /// begins another motion there. If CVODE fails, it goes on from the last good point with ten times the
+  /// tolerance, from then on. \throws std::runtime_error if it fails with 10⁶ times the tolerance too.
   Step step();
 
-  /// \param t_s  within what the last step() has solved.
+  /// State inside the last step(), or at t = 0 right after restart(). \param t_s  is clipped to CVODE's step.
   [[nodiscard]] OdeState state_at(double t_s) const;
 
-  /// Factor by which the tolerances were increased so far; 1 without a failure.
+  /// Factor by which the tolerances were increased since construction; 1 without a failure.
   [[nodiscard]] double widened() const noexcept { return widened_; }
-  /// Number of extremes closer to zero than their doubt since construction, so that the event may wrongly be
-  /// found or missed.
+  /// Number of extremes since construction that were closer to zero than their doubt, so that an event may
+  /// wrongly have been found or missed.
   [[nodiscard]] long undecided_count() const noexcept { return undecided_; }
-  /// Since construction.
+  /// Number of steps since construction.
   [[nodiscard]] long step_count() const noexcept { return steps_; }
 
  private:

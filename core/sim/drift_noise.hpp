@@ -14,14 +14,15 @@
 
 namespace stickslip::sim {
 
-/// x ← decay · x + step · (a standard normal number), once a scan.
+/// One of the processes: x ← decay · x + step · (a standard normal number), once a scan.
 struct DriftProcess {
   double decay = 0.0;  ///< e^(−2π f/scan rate), f the corner frequency
   double step_V = 0.0;
   double value_V = 0.0;
 };
 
-/// At value zero. All have the standard deviation sd/√(their number).
+/// The processes of a drift, with value zero, from the lowest corner frequency to the highest. Each has the
+/// standard deviation sd_V/√(their number). \param scan_rate_Hz  true.
 [[nodiscard]] std::vector<DriftProcess> drift_processes(const DriftNoise& settings, double scan_rate_Hz);
 
 /// One-sided density of the sampled drift, V²/Hz, aliases included; 0 ≤ frequency ≤ half the rate.

@@ -24,9 +24,10 @@ class ExponentialPolynomial {
   static constexpr int kOrders = 5;  ///< m = 0 … 4
   static constexpr int kDecays = 3;
 
+  /// The terms of one λ: Σ_m weight[m] φ_m(λ, t).
   struct Decay {
     double rate_per_s = 0.0;  ///< λ ≠ 0
-    int orders = 0;           ///< Weights of this order and above are zero.
+    int orders = 0;           ///< Weights of this m and above are zero.
     std::array<double, kOrders> weight{};
   };
 
@@ -35,24 +36,25 @@ class ExponentialPolynomial {
 
   /// Adds a t^k.
   void add_power(int k, double a);
-  /// Adds b φ_m(λ, t); with λ = 0 that is a power. Contract, of results too: at most kDecays different λ,
-  /// powers below kPowers, orders below kOrders; integral() raises both by one.
+  /// Adds b φ_m(λ, t), m = `order`; for λ = 0 this is b t^m/m!. Aborts, like every operation here, if the
+  /// result would have a power of kPowers or more, an order of kOrders or more, or more than kDecays
+  /// different λ.
   void add_decay(double rate_per_s, int order, double b);
   ExponentialPolynomial& operator+=(const ExponentialPolynomial& other);
 
   [[nodiscard]] double value(double t_s) const noexcept;
-  /// Sum of the absolute values of its terms, to which the rounding error is relative.
+  /// Sum of the absolute values of the terms; the rounding error of value() is relative to it.
   [[nodiscard]] double magnitude(double t_s) const noexcept;
   [[nodiscard]] ExponentialPolynomial scaled(double factor) const;
   [[nodiscard]] ExponentialPolynomial derivative() const;
-  /// Integral from 0.
+  /// Integral from 0 to t. Raises powers and orders by one.
   [[nodiscard]] ExponentialPolynomial integral() const;
-  /// The function of t + by_s. \param by_s ≥ 0
+  /// The function at t + by_s, as a function of t. \param by_s ≥ 0
   [[nodiscard]] ExponentialPolynomial later(double by_s) const;
-  /// Derivative plus λ times the function, for the λ of a decay; the result has no such decay.
+  /// Derivative plus λ times the function, for the λ of decay(index); the result has no decay with this λ.
   [[nodiscard]] ExponentialPolynomial without_decay(int index) const;
-  /// Forced response: the particular solution p of p″ + γp′ + ω₀² p = ω₀² (this). Requires a
-  /// distance_from_resonance() well above zero for each decay.
+  /// Forced response: the solution p of p″ + γp′ + ω₀² p = ω₀² (this) that is again a polynomial with the
+  /// same decays. Requires that no decay is near resonance: each |distance_from_resonance()| well above zero.
   [[nodiscard]] ExponentialPolynomial response(const model::Oscillator& oscillator) const;
 
   [[nodiscard]] int powers() const noexcept { return powers_; }  ///< Highest k + 1; 0: no polynomial.
@@ -68,12 +70,12 @@ class ExponentialPolynomial {
   std::array<Decay, kDecays> decay_{};
 };
 
-/// φ₀ … φ_(count−1) of λ at t ≥ 0.
+/// φ₀ … φ_(count−1) of λ = rate_per_s at t ≥ 0; the others are 0. \param count  0 … kOrders
 [[nodiscard]] std::array<double, ExponentialPolynomial::kOrders> decay_integrals(double rate_per_s,
                                                                                  double t_s, int count);
 
-/// (λ² − γλ + ω₀²)/ω₀²: distance of a decay from a free motion of the oscillator; zero is resonance, possible
-/// only for an overdamped oscillator.
+/// (λ² − γλ + ω₀²)/ω₀²: distance of the decay e^(−λt) from a free motion of the oscillator. It is
+/// zero at resonance and negative between two resonances; if the oscillator oscillates, always above zero.
 [[nodiscard]] double distance_from_resonance(double rate_per_s, const model::Oscillator& oscillator);
 
 }  // namespace stickslip::sim

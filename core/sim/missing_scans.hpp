@@ -13,19 +13,21 @@
 
 namespace stickslip::sim {
 
-/// Sequence of bursts; scans between them take no computing time.
+/// Sequence of bursts of missing scans; scans between them take no computing time. Call restart() first.
 class MissingBursts {
  public:
   static constexpr std::string_view kName = "missing_scans";
 
+  /// \param scan_rate_Hz  true.
   MissingBursts(const MissingScans& settings, double scan_rate_Hz);
 
-  /// Back to the first burst. \param seed of the scene's run
+  /// Returns to the first burst. \param seed  of the scene's run.
   void restart(std::uint64_t seed);
 
   /// The present burst: scans [first, end) are missing.
   [[nodiscard]] std::int64_t first() const noexcept { return first_; }
   [[nodiscard]] std::int64_t end() const noexcept { return end_; }
+  /// Goes to the next burst, which may begin at end().
   void next();
 
  private:

@@ -26,7 +26,8 @@ namespace stickslip::sim {
 struct BeltSegment {
   double duration_s = 0.0;
   double speed_m_per_s = 0.0;  ///< Negative: the carriage returns.
-  /// The belt stops for the rest of the segment as soon as the force is zero.
+  /// The belt stops for the rest of the segment as soon as the spring's force is zero or less, which may be
+  /// at its start.
   bool halt_when_unloaded = false;
   double acceleration_m_per_s2 = 0.0;
   double jerk_m_per_s3 = 0.0;
@@ -34,9 +35,9 @@ struct BeltSegment {
   double time_constant_s = 1.0;         ///< > 0
 };
 
-/// Effect `kinetic_drift` (motion): K changes by a factor f(x) of the time since the start of the scene or of
-/// the way ∫v dt that the belt has gone since then (back again where it returns); S − K of the contact is
-/// unchanged, so S changes by the same amount.
+/// Effect `kinetic_drift` (motion): K of each contact is multiplied by f(x), where x is the time since scan
+/// 0, or the net belt travel ∫v dt since then, which decreases where the belt returns. S − K of the contact
+/// stays, so S changes by the same amount as K.
 ///     linear       f = 1 + change · x/scale
 ///     exponential  f = 1 + change · (1 − e^(−x/scale))
 struct KineticDrift {
@@ -44,21 +45,22 @@ struct KineticDrift {
   enum class Over { kTime, kBeltTravel };
   Form form = Form::kLinear;
   Over over = Over::kTime;
-  double change = 0.0;  ///< Relative, of K; f never goes below zero within the scene.
+  double change = 0.0;  ///< Relative, of K; such that f ≥ 0 throughout the motion.
   double scale = 1.0;   ///< > 0; s, or m of belt travel.
 };
 
-/// Effects `velocity_dependence` and `stribeck` (motion): while the sled slides at V = |belt − sled|,
+/// Effects `velocity_dependence` and `stribeck` (motion): while the sled slides at V = |belt − sled|, m/s,
 ///     K(V) = K + per_speed · V + stribeck_rise · e^(−(V/stribeck_speed)^stribeck_exponent).
 /// [Armstrong-Hélouvry, Dupont and Canudas de Wit, Automatica 30(7):1083–1138, 1994, (4)]
 struct VelocityDependence {
-  double per_speed_s_per_m = 0.0;       ///< Any sign; below zero friction decreases with speed.
-  double stribeck_rise = 0.0;           ///< Increase of K at V → 0; from 0 to S − K.
+  double per_speed_s_per_m = 0.0;  ///< Any sign; below zero friction decreases with speed.
+  /// Increase of K at V → 0; from 0 to S − K. A contact with a smaller S − K has that as its increase.
+  double stribeck_rise = 0.0;
   double stribeck_speed_m_per_s = 1.0;  ///< > 0
   double stribeck_exponent = 1.0;       ///< > 0; 1 (Tustin), 2 (Gaussian).
 };
 
-/// Effect `rate_and_state` (motion): friction without S and K of its own, regularised at V = 0:
+/// Effect `rate_and_state` (motion): law of friction in place of S and K, regularised at V = 0:
 ///     μ(V, θ) = a asinh( V/(2 V₀) · e^((μ₀ + b ln(V₀ θ/D_c))/a) ),
 ///     ageing law  θ′ = 1 − |V| θ/D_c,    slip law  θ′ = −(|V| θ/D_c) ln(|V| θ/D_c).
 /// [Dieterich, J. Geophys. Res. 84(B5):2161–2168, 1979; Ruina, J. Geophys. Res. 88(B12):10359–10370, 1983;
@@ -79,45 +81,53 @@ struct Motion {
   double mu_s = 0.0;  ///< S ≥ mu_k
   double mu_k = 0.0;  ///< K ≥ 0
   double gravity_m_per_s2 = 0.0;
-  bool damper_counts_at_onset = false;  ///< Slip starts when spring and damper together hold S.
-  PaperSettings paper;                  ///< Variation of S and K from contact to contact.
-  bool one_way_coupling = false;
-  std::vector<BeltSegment> belt;  ///< In the order of time; the belt rests after the last.
-  /// ≥ 0; above zero only with one_way_coupling. At scan 0 the sled moves with the belt, at the speed of the
-  /// first segment, even if that has no length.
+  /// Slip starts when spring and damper together reach S; false: when the spring alone does.
+  bool damper_counts_at_onset = false;
+  PaperSettings paper;            ///< Effects that vary S and K.
+  bool one_way_coupling = false;  ///< The coupling cannot push: it goes slack, without force.
+  std::vector<BeltSegment> belt;  ///< In the order of time, from scan 0; the belt rests after the last.
+  /// Slack of the coupling at scan 0, ≥ 0; above zero only with one_way_coupling. The sled then moves with
+  /// the belt, at the speed of the first segment, even if that has no length.
   double startup_slack_m = 0.0;
   std::optional<KineticDrift> kinetic_drift;
-  std::optional<VelocityDependence> velocity_dependence;  ///< Numeric only.
-  std::optional<RateAndState> rate_and_state;             ///< Numeric only; replaces S and K.
+  std::optional<VelocityDependence> velocity_dependence;  ///< Only for NumericSolver.
+  /// Only for NumericSolver; replaces S, K, `paper` and damper_counts_at_onset. Not together with
+  /// kinetic_drift or velocity_dependence.
+  std::optional<RateAndState> rate_and_state;
 };
 
-/// Change of the sled's mode.
+/// Start of a piece of the motion. The mode may be that of the piece before. What mode, onset, capture, S and
+/// K mean for rate-and-state friction: rate_and_state_motion.hpp.
 struct ModeStart {
   ScanTime time;
   model::Mode mode = model::Mode::kStick;
-  bool onset = false;        ///< A slip that begins from sticking.
-  bool capture = false;      ///< The slip before ended because the sled had reached the belt's speed.
-  Coefficients paper;        ///< S and K of the present contact.
-  double coefficient = 0.0;  ///< Of the spring; below zero the slack.
+  /// A slip from the belt's speed, because the contact gave way; perhaps at once, without a stick before.
+  bool onset = false;
+  bool capture = false;  ///< The slip before ended because the sled had reached the belt's speed.
+  /// S and K of the present contact, with drift, without dependence on speed. From an onset on, S is the
+  /// limit that was reached, with ageing; before, S is without ageing.
+  Coefficients paper;
+  double coefficient = 0.0;  ///< F/(m g) of the spring; of a slack coupling minus the slack times ω₀²/g.
 };
 
-/// Observer of the changes of mode, called in order.
+/// Receives the starts of the pieces, in the order of time. The first comes when a solver is constructed or
+/// restarted. A numeric solver may tell a start that lies later than the instant it was asked for.
 class MotionObserver {
  public:
   virtual ~MotionObserver() = default;
   virtual void mode_began(const ModeStart& start) = 0;
 };
 
-/// Interval of time in which the force has one closed form, c(t) = h(t) + course(t), with t from its start.
+/// Interval of time in which the force, as a coefficient, is c(t) = h(t) + course(t), with t from its start.
 struct ForceStretch {
   double duration_s = 0.0;
   ExponentialPolynomial course;
-  /// The oscillation h, h″ = −ω₀² h − γ h′, by its value and rate at the start; zero unless the sled slips.
+  /// Value and rate at the start of the oscillation h, h″ = −ω₀² h − γ h′; zero if there is none.
   double wave = 0.0;
   double wave_rate_per_s = 0.0;
 };
 
-/// Receiver of the continuous force, as consecutive ForceStretch intervals without gaps.
+/// Receives the continuous force, as consecutive ForceStretch intervals without gaps.
 class ForceFollower {
  public:
   virtual ~ForceFollower() = default;

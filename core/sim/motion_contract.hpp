@@ -1,13 +1,15 @@
 /// \file
-/// Contract of a motion that every solver relies on.
+/// Check of a motion before it is solved.
 #pragma once
 
 #include "core/sim/motion.hpp"
 
 namespace stickslip::sim {
 
-/// Checks the contract: every number is finite and in the range stated in motion.hpp; only a belt segment may
-/// last infinitely. Scenes are checked when read, with error messages.
+/// Aborts unless oscillator, S and K, gravity, start-up slack, belt segments and the numbers of kinetic_drift
+/// are in the ranges stated in motion.hpp. A segment may last infinitely. Not checked here: whether f of the
+/// drift stays ≥ 0, and the settings of `paper`, velocity_dependence and rate_and_state. Scenes from files
+/// have been checked, with error messages.
 void expect_sound(const Motion& motion);
 
 }  // namespace stickslip::sim

@@ -18,51 +18,59 @@
 
 namespace stickslip::sim {
 
-/// Accuracy of closed forms: a few roundings of a double. For its growth over n cycles see docs/accuracy.md.
+/// Accuracy of the coefficient from closed forms: a few roundings of a double. For its growth over n cycles
+/// see docs/accuracy.md.
 inline constexpr double kExactAccuracy = 8.0 * std::numeric_limits<double>::epsilon();
 
 /// Method of the solution, and its accuracy.
 struct SolverMethod {
   std::string_view name;  ///< For people and records.
   double accuracy = 0.0;  ///< Expected largest error of the coefficient.
-  /// Captures so far, found or not, that were closer than the accuracy can decide.
+  /// Captures since restart(), found or not, too close to grazing for the accuracy to tell whether they
+  /// happen. Always 0 for closed forms and for rate-and-state friction.
   std::int64_t undecided_count = 0;
 };
 
-/// Runs in constant memory. Thread-bound.
+/// Computes the motion of the sled and shows its force, in the order of time. The constructor leaves it as
+/// restart() does. Its memory is constant. Thread-bound.
 class MotionSolver {
  public:
   virtual ~MotionSolver() = default;
 
-  /// Returns to scan 0, at rest and unloaded, with the random numbers of `seed`. Does not allocate.
+  /// Returns to scan 0, with the coupling unloaded, or slack by startup_slack_m, and the random numbers of
+  /// `seed`. Does not allocate.
   virtual void restart(std::uint64_t seed) = 0;
 
-  /// Writes the coefficient F/(m g) at the next scans; the values do not depend on the division into calls.
-  /// Does not allocate.
+  /// Writes the coefficient F/(m g) at the next scans, from scan 0 on; the values do not depend on the
+  /// division into calls. Does not allocate.
   virtual void next(std::span<double> coefficient) = 0;
 
-  /// The coefficient at any instant; instants must not decrease. next() and skip() have a counter of their
-  /// own and may continue only at scans not before the latest instant. Does not allocate.
+  /// The coefficient at any instant, which must not be before one passed already by any call. It does not
+  /// move the counter of next() and skip(), which may continue only at scans not before the latest instant.
+  /// Does not allocate.
   [[nodiscard]] virtual double at(const ScanTime& instant) = 0;
 
-  /// As at(), but passes the continuous force since the last call to `follower`. Does not allocate.
+  /// Passes the continuous force from the last call, or from scan 0, up to `instant` to `follower`. Between
+  /// two calls nothing else may have moved the motion past the last instant. Does not allocate.
   virtual void follow_to(const ScanTime& instant, ForceFollower& follower) = 0;
 
-  /// Skips `scans` scans; takes time only for the events between.
+  /// Skips `scans` ≥ 0 scans. Closed forms take time only for the events between; a numeric solver integrates
+  /// all of it.
   virtual void skip(std::int64_t scans) = 0;
 
   [[nodiscard]] virtual SolverMethod method() const = 0;
 };
 
-/// Whether every effect of this motion has a closed form. Not the nonlinear laws; not a drift of K that is
-/// exponential over the travel of a belt that changes its speed; not a drift in resonance with an overdamped
-/// oscillator.
+/// Whether Propagator can solve this motion. It cannot with velocity_dependence or rate_and_state; with a
+/// drift of K that is exponential over belt travel, if the speed changes within a segment; and with a drift
+/// of K if a decay, its own or that of the belt's speed, is nearly in resonance with the oscillator
+/// (|distance_from_resonance()| < 1e-3), which takes γ of nearly 2ω₀ or more.
 [[nodiscard]] bool has_closed_form(const Motion& motion) noexcept;
 
-/// The cheapest solver that meets the accuracy: closed forms wherever the motion admits them, since
-/// they are both the fastest and the most accurate (docs/accuracy.md); else SUNDIALS CVODE.
+/// Makes the solver of a motion: Propagator if it has_closed_form(), since closed forms are the fastest and
+/// the most accurate (docs/accuracy.md); else NumericSolver. The motion is copied.
 /// \param scan_rate_Hz > 0.
-/// \param accuracy  of the coefficient, > 0.
+/// \param accuracy  asked of the coefficient, > 0; method() tells the one that is expected.
 /// \param observer may be null; outlives the solver.
 /// \param seed as in restart().
 [[nodiscard]] std::unique_ptr<MotionSolver> make_motion_solver(const Motion& motion, double scan_rate_Hz,

@@ -21,12 +21,13 @@ struct SpringForce {
   double rate_per_s = 0.0;
 };
 
-/// The motion as consecutive intervals of time. Thread-bound.
+/// The motion as consecutive intervals of time; it has been solved up to the end of the present one. Call
+/// restart() first. Thread-bound.
 class NumericMotion {
  public:
   virtual ~NumericMotion() = default;
 
-  /// Returns to scan 0, at rest and unloaded.
+  /// Returns to scan 0, with the coupling unloaded, or slack by startup_slack_m.
   virtual void restart(std::uint64_t seed) = 0;
 
   // The present interval, in which the force is known.
@@ -36,16 +37,18 @@ class NumericMotion {
   [[nodiscard]] virtual SpringForce force_at(const ScanTime& instant) const = 0;
 
   /// Advances to the next interval, which starts where this one ends. It may have zero length, as after an
-  /// event.
+  /// event. \throws std::runtime_error if CVODE fails (Cvode::step()).
   virtual void advance() = 0;
 
   [[nodiscard]] virtual SolverMethod method() const = 0;
 };
 
-/// Coulomb friction, with K that may depend on time and on the speed of sliding.
+/// Makes the motion with Coulomb friction; K may depend on time, belt travel and the speed of sliding.
+/// \param observer  may be null; outlives the motion.
 [[nodiscard]] std::unique_ptr<NumericMotion> make_sliding_motion(const Motion& motion, double scan_rate_Hz,
                                                                  double accuracy, MotionObserver* observer);
-/// Rate-and-state friction.
+/// Makes the motion with rate-and-state friction. \param motion  with rate_and_state.
+/// \param observer  may be null; outlives the motion.
 [[nodiscard]] std::unique_ptr<NumericMotion> make_rate_and_state_motion(const Motion& motion,
                                                                         double scan_rate_Hz, double accuracy,
                                                                         MotionObserver* observer);
@@ -56,13 +59,14 @@ inline constexpr double kLongestPiece_s = 64.0;
 /// Choice of CVODE's step tolerance for a requested accuracy.
 ///
 /// The errors of the steps add up over a cycle, and, since each cycle starts where the last one ended, over
-/// the cycles: error ≤ growth · (1 + cycles while the belt moves) · tolerance, with a growth that is
-/// measured for each method (tests/numeric/numeric_solver_accuracy_test.cpp).
+/// the cycles: error ≤ growth · (1 + T ω₀/2π) · tolerance, with the total duration T of the belt's segments,
+/// and a growth that is measured for each method (tests/numeric/numeric_solver_accuracy_test.cpp).
 struct ToleranceChoice {
   double tolerance = 0.0;  ///< Of a coefficient in one step.
-  double accuracy = 0.0;   ///< Expected accuracy; larger than requested if rounding sets the limit.
+  /// Expected accuracy; larger than requested if least_tolerance sets the limit, infinite if T is.
+  double accuracy = 0.0;
 
-  /// \param least_tolerance  below which rounding dominates.
+  /// \param accuracy  requested, > 0. \param least_tolerance  below which rounding dominates.
   static ToleranceChoice of(const Motion& motion, double accuracy, double growth, double least_tolerance) {
     double moving_s = 0.0;
     for (const BeltSegment& segment : motion.belt) moving_s += segment.duration_s;

@@ -19,13 +19,15 @@
 
 namespace stickslip::sim {
 
-/// Needs the same memory however long it runs; what "does not allocate" promises holds as far as CVODE
-/// keeps to its own arrays. Thread-bound.
+/// MotionSolver by CVODE. Its memory is constant; where MotionSolver promises not to allocate, only CVODE
+/// itself may. Thread-bound.
 ///
-/// next(), at(), follow_to() and skip() throw std::runtime_error where CVODE cannot go on at any tolerance.
+/// next(), at(), follow_to() and skip() throw std::runtime_error if CVODE fails even with 10⁶ times the
+/// chosen tolerance; a smaller widening shows in method().accuracy.
 class NumericSolver final : public MotionSolver {
  public:
-  /// \param scan_rate_Hz > 0. \param accuracy  of the coefficient over the belt's course, > 0.
+  /// \param motion  is copied. \param scan_rate_Hz > 0.
+  /// \param accuracy  asked of the coefficient while the belt's segments last, > 0.
   /// \param observer may be null; outlives the solver. \param seed as in restart().
   NumericSolver(const Motion& motion, double scan_rate_Hz, double accuracy,
                 MotionObserver* observer = nullptr, std::uint64_t seed = 1);
@@ -35,9 +37,9 @@ class NumericSolver final : public MotionSolver {
   [[nodiscard]] double at(const ScanTime& instant) override;
   void follow_to(const ScanTime& instant, ForceFollower& follower) override;
   void skip(std::int64_t scans) override;
-  /// The accuracy is the one asked for; larger where rounding, or a step that would not succeed, set the
-  /// limit. Near grazing the time of a capture is less accurate, as its square root: physics of the motion,
-  /// which no tolerance mends.
+  /// The accuracy is the one asked for, or a larger one if rounding set the limit, or if CVODE has had to
+  /// widen its tolerance since the construction. Near grazing the time of a capture is less accurate: its
+  /// error goes as the square root of that of the coefficient.
   [[nodiscard]] SolverMethod method() const override { return motion_->method(); }
 
  private:

@@ -29,10 +29,10 @@
 
 namespace stickslip::sim {
 
-/// Needs the same memory however long it runs. Thread-bound.
+/// MotionSolver by closed forms. Its memory is constant. Thread-bound.
 class Propagator final : public MotionSolver {
  public:
-  /// \param motion  has_closed_form().
+  /// \param motion  with has_closed_form(); is copied.
   /// \param scan_rate_Hz > 0.
   /// \param observer may be null; outlives the propagator.
   /// \param seed as in restart().
@@ -44,7 +44,7 @@ class Propagator final : public MotionSolver {
   [[nodiscard]] double at(const ScanTime& instant) override;
   void follow_to(const ScanTime& instant, ForceFollower& follower) override;
   void skip(std::int64_t scans) override;
-  /// No steps, and event times bracketed to the last bits of a double: first_rise.hpp.
+  /// "exact closed forms", kExactAccuracy: event times too are exact to the last bits of a double.
   [[nodiscard]] SolverMethod method() const override { return {"exact closed forms", kExactAccuracy}; }
 
  private:

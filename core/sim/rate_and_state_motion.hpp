@@ -1,19 +1,21 @@
 /// \file
 /// Motion of the sled with rate-and-state friction: one equation for stick and slip, without distinct modes.
 ///
-/// Modes are assigned by thresholds, to compare a detector with. There are two, so that neither rounding nor
-/// steady creep near one of them causes events:
+/// Modes are assigned by thresholds of the sliding speed |V|, to compare a detector with. There are two, so
+/// that neither rounding nor steady creep near one of them causes events:
 ///     slip onset  |V| rises through half the belt's speed. A slip accelerates exponentially, so that this
 ///                 is the peak of the force within the time of a few e-foldings, and a sled that comes to
 ///                 slide steadily (V = belt speed) crosses it too.
 ///     capture     |V| falls through a hundredth of it: the sled moves with the belt. A ring-down whose
 ///                 speed stays above never counts as sticking again, as with Coulomb friction.
-/// While the belt rests, a hundredth of the highest speed of its course stands for its speed.
-/// S of a slip is the coefficient at its onset, K that of steady sliding at the belt's speed.
+/// The belt's speed here is |v| at the start of the present piece of the motion, but never less than a
+/// hundredth of the highest |v| at the ends of the belt's segments, also while the belt rests.
+/// K of a slip is the coefficient of steady sliding at that speed, S that of the spring at the onset, but at
+/// least K.
 ///
-/// A run starts with a contact that has not rested. Ageing law: θ = 0, or rather so little that the rest of
-/// the motion cannot tell (10⁻³ of the accuracy, over ω₀). Slip law: contacts that do not slide keep their
-/// θ for ever, also θ = 0, which would be no friction; the run starts with θ = D_c/V₀, that of μ₀.
+/// A run starts with a contact that has not rested. Ageing law: θ = 10⁻³ accuracy/ω₀, so short that the
+/// motion does not differ from that with θ = 0. Slip law: θ of a contact that does not slide never changes,
+/// so that θ = 0 would be no friction for ever; the run starts with θ = D_c/V₀, which gives μ₀.
 ///
 /// |V| is not smooth at V = 0, but there V is exponentially small in x: the step control copes, and a
 /// change of sign is no event.
@@ -28,6 +30,8 @@
 
 namespace stickslip::sim {
 
+/// NumericMotion with rate-and-state friction. Aborts if the motion also has velocity_dependence or
+/// kinetic_drift; ignores S, K, `paper`, damper_counts_at_onset and the seed.
 class RateAndStateMotion final : public NumericMotion {
  public:
   RateAndStateMotion(const Motion& motion, double scan_rate_Hz, double accuracy, MotionObserver* observer);

@@ -2,7 +2,7 @@
 /// The equations of a sled on a rate-and-state contact, for CVODE.
 ///
 /// The unknowns are y = (c, x, ψ): the coefficient of the spring, the coefficient of friction x = μ(V, θ),
-/// and ψ = ln(V₀θ/D_c). The speed of sliding follows from the law turned round,
+/// and ψ = ln(V₀θ/D_c). The speed of sliding, belt less sled, follows from the law solved for V,
 ///     V = 2 V₀ e^(−(μ₀ + bψ)/a) sinh(x/a),
 /// so that it keeps all its digits from 1e-300 m/s to metres per second and may pass through zero. Taken as
 /// an unknown itself, or as belt speed less sled speed, it would lose them as soon as the sled sticks.
@@ -19,13 +19,14 @@
 
 namespace stickslip::sim {
 
+/// OdeSystem with the state (c, x, ψ).
 class RateAndStateSystem final : public OdeSystem {
  public:
   /// Which event is which.
   enum : std::size_t {
     kNoForce,   ///< c meets zero: from above in a taut coupling, from below in a slack one.
-    kFast,      ///< |V| rises to a threshold.
-    kCaughtUp,  ///< |V| falls to one.
+    kFast,      ///< |V| rises to Piece::fast_m_per_s.
+    kCaughtUp,  ///< |V| falls to Piece::caught_up_m_per_s.
   };
   struct Piece {
     bool taut = true;
@@ -37,17 +38,18 @@ class RateAndStateSystem final : public OdeSystem {
 
   RateAndStateSystem(const RateAndState& law, const model::Oscillator& oscillator, double gravity_m_per_s2);
 
+  /// Sets the piece that all functions below refer to; its belt rate is that from t = 0 on.
   void begin(const Piece& piece) { piece_ = piece; }
 
   [[nodiscard]] OdeState rate(double t_s, const OdeState& y) const override;
   [[nodiscard]] Jacobian jacobian(double t_s, const OdeState& y) const override;
   [[nodiscard]] Events events(double t_s, const OdeState& y) const override;
 
-  /// V; \param friction x, \param psi ψ
+  /// V. \param friction  x. \param psi  ψ.
   [[nodiscard]] double speed_m_per_s(double friction, double psi) const;
-  /// μ(V, θ)
+  /// x = μ(V, θ). \param psi  ψ.
   [[nodiscard]] double friction(double speed_m_per_s, double psi) const;
-  /// c″
+  /// c″, 1/s².
   [[nodiscard]] double acceleration(double t_s, const OdeState& y) const;
 
  private:

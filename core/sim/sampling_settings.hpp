@@ -19,8 +19,8 @@ struct ClockJitter {
 
 /// Effect `missing_scans`: bursts of scans that never arrive, at random times and of random length.
 struct MissingScans {
-  double rate_per_s = 0.0;         ///< Bursts in each second between bursts.
-  double mean_length_scans = 1.0;  ///< ≥ 1; lengths are geometric: each further scan is as likely.
+  double rate_per_s = 0.0;         ///< Mean number of bursts in a second that is outside of bursts, > 0.
+  double mean_length_scans = 1.0;  ///< ≥ 1; the lengths are geometrically distributed.
 };
 
 }  // namespace stickslip::sim

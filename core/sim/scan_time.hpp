@@ -9,11 +9,12 @@
 
 namespace stickslip::sim {
 
+/// Moment of a simulation; {0, 0.0} is scan 0.
 struct ScanTime {
   std::int64_t scan = 0;
   double fraction = 0.0;  ///< 0 ≤ fraction < 1
 
-  /// \param periods ≥ 0, scan periods later; saturates at the largest index.
+  /// The moment `periods` ≥ 0 scan periods later; kForEver if that is beyond the largest index.
   [[nodiscard]] ScanTime later(double periods) const noexcept {
     const double sum = fraction + periods;
     const double whole = std::floor(sum);
@@ -30,6 +31,7 @@ struct ScanTime {
   auto operator<=>(const ScanTime&) const = default;
 };
 
+/// The latest moment: never.
 inline constexpr ScanTime kForEver{std::numeric_limits<std::int64_t>::max(), 0.0};
 
 }  // namespace stickslip::sim

@@ -48,7 +48,7 @@ struct ConstantSpeed {
 
 // Effects that shape the pull of `constant_speed` (motion); at most one of them.
 
-/// Effect `speed_ramp`: from the pull speed in a line to another over the pull.
+/// Effect `speed_ramp`: during the pull the speed changes linearly from the pull speed to another.
 struct SpeedRamp {
   double to_m_per_s = 0.0;  ///< ≥ 0
 };
@@ -58,45 +58,49 @@ struct ExponentialStart {
   double time_constant_s = 0.0;  ///< τ > 0
 };
 
-/// Effect `jerk_limited_start`: to the pull speed V in 2√(V/j), acceleration first rising, then falling.
+/// Effect `jerk_limited_start`: the belt reaches the pull speed V after 2√(V/j), its acceleration first
+/// rising, then falling.
 struct JerkLimitedStart {
   double jerk_m_per_s3 = 0.0;  ///< j > 0
 };
 
-/// Effect `piecewise_speed` (motion), in place of `constant_speed`: lines between points; at rest before the
-/// first, on at its speed after the last. Two points at one time are a jump.
+/// Effect `piecewise_speed` (motion), in place of `constant_speed`: the speed is linear between points.
+/// Before the first point the belt is at rest; after the last it keeps that speed to the end of the scene.
+/// Two points at one time are a jump.
 struct PiecewiseSpeed {
   struct Point {
     double at_s = 0.0;  ///< After the start of the scene; never before the point before.
     double speed_m_per_s = 0.0;
   };
-  std::vector<Point> points;
+  std::vector<Point> points;  ///< At least one.
 };
 
-/// Effect `onset_convention` (motion): which force has to exceed S for the slip to start.
+/// Effect `onset_convention` (motion): which force has to reach S for the slip to start.
 enum class OnsetConvention { kSpring, kSpringAndDamper };
 
-/// Effect `stribeck` (motion): friction that falls as sliding sets in; VelocityDependence.
+/// Effect `stribeck` (motion): friction falls with rising sliding speed, as VelocityDependence has it.
 struct Stribeck {
   double rise = 0.0;
   double speed_m_per_s = 0.0;
   double exponent = 2.0;
 };
 
+/// Settings of a simulated test; effects that are absent or false are not simulated.
 struct Scene {
   std::string name;         ///< The file's name without its ending.
   std::string description;  ///< One line for people.
   std::string text;         ///< Complete text of the file; after changes, a file that gives this scene.
   std::uint64_t seed = 1;
-  double scan_rate_Hz = 350.0;  ///< Unless the board is asked for another.
+  double scan_rate_Hz = 350.0;  ///< Nominal; unless the board is asked for another.
   double duration_s = 0.0;      ///< Of one repetition.
-  double accuracy = 1e-9;       ///< Of the coefficient; determines the solver.
+  double accuracy = 1e-9;       ///< Asked of the coefficient; matters only to a motion without closed form.
 
   double sled_mass_kg = 0.0;
   double gravity_m_per_s2 = model::kStandardGravity_m_per_s2;
   model::Oscillator oscillator;  ///< With the damping, if listed.
   SceneLoadCell load_cell;
 
+  // Before the effects.
   double mu_s = 0.0;
   double mu_k = 0.0;
 
@@ -128,56 +132,64 @@ struct Scene {
   [[nodiscard]] double normal_load_N() const noexcept { return sled_mass_kg * gravity_m_per_s2; }
 };
 
-/// One key of a scene set, or one effect dropped.
+/// Change of a scene file: sets a key, or removes a key or table, such as an effect.
 struct SceneChange {
-  std::string path;                  ///< Of the key, dotted; or "effects." and the effect.
-  std::optional<std::string> value;  ///< TOML, strings with or without quotes; absent: drop.
+  std::string path;                  ///< Dotted, such as "paper.mu_s" or "effects.damping".
+  std::optional<std::string> value;  ///< TOML, strings with or without quotes; absent: remove.
   std::string origin;                ///< Names the change in messages: the option as typed.
 };
 
+/// Duration asked of a whole scene.
 struct SceneDuration {
   double seconds = 0.0;
-  std::string origin;
+  std::string origin;  ///< Names it in messages: the option as typed.
 };
 
 /// Changes to a scene file.
 struct SceneChanges {
   std::vector<SceneChange> changes;  ///< In this order.
-  /// Duration of the whole scene; the pull is lengthened or shortened.
+  /// Duration of the whole scene, applied last. It sets the pull of `constant_speed` to what the other phases
+  /// leave, or, without that effect, the key `duration`.
   std::optional<SceneDuration> duration;
 };
 
-/// Usage error with file, line, value and what is allowed: unreadable file, unknown key or effect,
-/// missing or wrong unit, value out of range, S < K. An error caused by a change names it.
+/// Reads a scene file and applies the changes. Usage error with file, line, value and what is allowed:
+/// unreadable file, invalid TOML, unknown or missing key, unknown effect, effects that exclude each other,
+/// missing or wrong unit, value out of range, S < K. Usage error too: a change that removes what is absent, a
+/// duration too short for the phases beside the pull. An error caused by a change names its origin instead of
+/// the line.
 [[nodiscard]] base::Result<Scene> load_scene(const std::filesystem::path& file,
                                              const SceneChanges& changes = {});
-/// Parses the text of a scene. \param file  stands for the file in messages and gives the scene its name.
+/// Parses the text of a scene; usage errors as of load_scene(). \param file  stands for the file in messages
+/// and gives the scene its name; it is not read.
 [[nodiscard]] base::Result<Scene> parse_scene(std::string_view text, const std::filesystem::path& file);
 
 /// The motion stage of the scene.
 [[nodiscard]] Motion motion_of(const Scene& scene);
 
-/// Interval in which the belt pulls, seconds of the scene.
+/// Interval in which the belt pulls; true seconds after the start of the scene.
 struct Pull {
   double start_s = 0.0;
   double end_s = 0.0;
 };
 
-/// The pull of `constant_speed`, or from the first to the last movement of `piecewise_speed`.
+/// The pull of `constant_speed`; or of `piecewise_speed`, from the start of the first movement, in either
+/// direction, to the end of the last one or of the scene. nullopt if the belt never moves.
 [[nodiscard]] std::optional<Pull> pull_of(const Scene& scene);
 
-/// Nominal pull speed; nullopt if the speed changes during the pull.
+/// Pull speed of `constant_speed`, which is reached later with `exponential_start` or `jerk_limited_start`;
+/// nullopt with `speed_ramp`, and without `constant_speed` (also for a `piecewise_speed` that is steady).
 [[nodiscard]] std::optional<double> steady_pull_speed_m_per_s(const Scene& scene);
 
-/// Pull speed over time if it changes, from the first movement to the stop; nullopt for a steady pull. Curves
-/// are approximated by lines within 0.1 % of the speed's change. The return of the carriage is left out,
-/// since its end depends on the force.
+/// Belt speed over time, counted from the first movement; nullopt for a steady pull and for a belt that never
+/// moves forwards. Of `constant_speed` it shows pull and stop, not the return of the carriage, whose end
+/// depends on the force. Curves are approximated by lines within 0.1 % of the speed's change.
 [[nodiscard]] std::optional<model::PullSpeed> pull_speed_of(const Scene& scene);
 
 /// True scan rate at this nominal rate, with the clock's error.
 [[nodiscard]] double true_scan_rate_Hz(const Scene& scene, double scan_rate_Hz) noexcept;
 
-/// Scans of one repetition at this nominal rate, missing ones too: all that begin before its end.
+/// Number of scans of one repetition at this nominal rate, missing ones too: all that are before its end.
 [[nodiscard]] std::int64_t scan_count(const Scene& scene, double scan_rate_Hz) noexcept;
 
 }  // namespace stickslip::sim

@@ -29,33 +29,36 @@
 
 namespace stickslip::sim {
 
-/// Simulates the listed effects only. Runs in constant memory. Thread-bound.
+/// Simulates one repetition of a scene, reading by reading, with the effects that the scene lists. Its memory
+/// is constant. next() throws std::runtime_error if CVODE fails (NumericSolver). Thread-bound.
 class SceneRun {
  public:
-  /// \param scan_rate_Hz > 0, nominal. Starts at the first scan with the scene's seed.
+  /// Starts at the first scan with the scene's seed, as restart() does.
+  /// \param scene  need not outlive this. \param scan_rate_Hz > 0, nominal.
   SceneRun(const Scene& scene, double scan_rate_Hz);
 
   /// Returns to the first scan, with the random numbers of `seed`. Does not allocate.
   void restart(std::uint64_t seed);
 
-  /// Index of the next scan that is not missing; the number of scans at the end of the scene.
+  /// Index of the next scan that is not missing; at the end of the scene the number of scans, scan_count().
   [[nodiscard]] std::int64_t next_scan() const noexcept { return next_scan_; }
 
   /// The next consecutive readings, from next_scan() on: counts if the scene lists `quantisation`,
   /// else volts. The values do not depend on the division into calls. Does not allocate.
-  /// \return number written: below the size only before missing scans and at the end of the scene; 0 only at
-  /// the end.
+  /// \return number written: below the size of `raw` only before missing scans and at the end of the scene; 0
+  /// only at the end, or for an empty `raw`.
   std::size_t next(std::span<double> raw) { return next(raw, {}); }
 
-  /// As next(raw), and also writes the noise-free force of each reading: the coefficient in the coupling at
-  /// the sampling instant, before transducer and signal stage. Readings are the same with and without it.
-  /// \param coefficient  as many as `raw`, or none at all.
+  /// As next(raw), and also writes the noise-free force of each reading: the coefficient F/(m g) in the
+  /// coupling at the sampling instant, before transducer and signal stage. Readings are the same with and
+  /// without it.
+  /// \param coefficient  as long as `raw`, or empty.
   std::size_t next(std::span<double> raw, std::span<double> coefficient);
 
-  /// Method of the solution, and its accuracy.
+  /// Method by which the motion is solved, and its accuracy.
   [[nodiscard]] SolverMethod method() const { return motion_->method(); }
 
-  /// Names of the effects that were built, in the order of the stages.
+  /// Names of the effects that are simulated, in the order of the stages.
   [[nodiscard]] std::vector<std::string_view> effects() const;
 
  private:

@@ -11,20 +11,29 @@
 
 namespace stickslip::sim {
 
-/// The truth about one repetition, with times in seconds after its first scan as a record has them:
-/// scans over the nominal rate. What has no place in the record is in true seconds (the frequency).
+/// The truth about one repetition. Times of modes and cycles are seconds after its first scan as a record has
+/// them: scan index over nominal rate. Frequencies and speeds are true ones. Slips are those that begin
+/// because the contact gives way; what that means for rate-and-state friction: rate_and_state_motion.hpp.
 ///
-/// Regime over the pull: stick-slip if each slip that began by giving way ended in sticking, ring-down
-/// if none did, mixed otherwise; a slip that the end of the pull interrupts is ignored; a sled that slides
-/// because of a fast start of the belt has not stuck. Steady-sliding if the slip cannot oscillate; undecided
-/// without a slip. Frequency: of the onsets if there are two, else ω/2π of the ring-down. Amplitude: half the
-/// range of the first slip in closed form [17], with zero as the least force of a one-way coupling; of a
-/// motion without closed forms that of the force itself. What rate-and-state friction calls a slip, and which
-/// S and K it then has: rate_and_state_motion.hpp.
+/// Regime over the pull: stick-slip if each slip ended in sticking, ring-down if none did, mixed if some did;
+/// undecided if there is no slip, or only one that the end of the pull interrupts. A slip counts as
+/// interrupted unless it has lasted longer than two free periods and than any captured slip before. Sliding
+/// that follows a fast start of the belt, without giving way, counts as a slip that did not stick, if it
+/// lasts that long.
 ///
+/// Pull speed: that of the belt at the first onset; without a slip steady_pull_speed_m_per_s(), or else 0.
+/// Frequency: mean one of the onsets if there are two or more; ω/2π if there is one and the regime is
+/// ring-down or mixed; else absent. Amplitude: half the range of the first slip in closed form [17], with
+/// zero as the least force of a one-way coupling; of a motion without closed forms that of the force itself;
+/// absent without a slip. Traditional coefficients: TraditionalTruth; absent without a slip. Without a pull
+/// (pull_of()) all these are absent, 0 or undecided.
+///
+/// \param scene  with an underdamped oscillator, as scene files have it.
+/// \param seed    of the repetition.
 /// \param method  by which the traditional coefficients are read from the force.
-/// \param scratch_folder  of the tables of a long test (base::LongColumn), which throw std::system_error
-///        then; empty: they are in memory.
+/// \param scratch_folder  of the tables of a long test (base::LongColumn); empty: they are in memory.
+/// \throws std::system_error if a table in scratch_folder fails; std::runtime_error if CVODE fails
+///         (NumericSolver).
 [[nodiscard]] model::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std::uint64_t seed,
                                            const model::Method& method = {},
                                            const std::filesystem::path& scratch_folder = {});

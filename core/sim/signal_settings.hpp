@@ -19,7 +19,7 @@ struct DriftNoise {
   double highest_frequency_Hz = 0.0;  ///< At least ten times the lowest.
 };
 
-/// Effect `mains_hum`: Σ amplitude · share · sin(2π · order · frequency · t + phase).
+/// Effect `mains_hum`: Σ amplitude · share · sin(2π · order · frequency · t + phase), t after the first scan.
 struct MainsHum {
   struct Harmonic {
     int order = 1;
@@ -28,7 +28,7 @@ struct MainsHum {
   };
   double frequency_Hz = 50.0;
   double amplitude_V = 0.0;
-  std::vector<Harmonic> harmonics;  ///< The fundamental first.
+  std::vector<Harmonic> harmonics;  ///< All that are added: the fundamental too, first.
 };
 
 /// Effect `spikes`: errors of single scans, at the times of a Poisson process, equally likely up and down.
@@ -41,10 +41,11 @@ struct Spikes {
 
 /// Effect `quantisation`: an ideal A/D converter that saturates at its rails.
 struct Quantisation {
-  int bits = 16;
+  int bits = 16;  ///< 1 … 32
   double range_min_V = -10.0;
   double range_max_V = 10.0;
 
+  /// Highest count, 2^bits − 1.
   [[nodiscard]] std::uint32_t maxdata() const noexcept {
     return static_cast<std::uint32_t>((std::uint64_t{1} << static_cast<unsigned>(bits)) - 1);
   }

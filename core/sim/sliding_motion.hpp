@@ -1,6 +1,6 @@
 /// \file
 /// Stick, slip and slack of Coulomb friction: sticking from the closed form of the belt's travel,
-/// sliding by CVODE, and no friction law in between, however steep.
+/// sliding by CVODE. The change from one to the other is an event; friction is not smoothed there.
 #pragma once
 
 #include "core/sim/belt_walk.hpp"
@@ -11,7 +11,8 @@
 
 namespace stickslip::sim {
 
-/// A piece of the motion has one phase and a time of its own, which starts at zero.
+/// NumericMotion with Coulomb friction. A piece of the motion has one phase and a time of its own, which
+/// starts at zero. Ignores rate_and_state.
 class SlidingMotion final : public NumericMotion {
  public:
   SlidingMotion(const Motion& motion, double scan_rate_Hz, double accuracy, MotionObserver* observer);

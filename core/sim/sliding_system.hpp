@@ -10,7 +10,7 @@
 
 namespace stickslip::sim {
 
-/// y = (c, c′/ω₀) with
+/// OdeSystem with the state y = (c, c′/ω₀) and
 ///     c″ + γ c′ + ω₀² (c − σ K(V)) = 0 in a taut coupling, c″ = σ ω₀² K(V) in a slack one,
 /// σ = +1 where the sled is slower than the belt, −1 where it is faster, V = σ (r − c′) g/ω₀².
 class SlidingSystem final : public OdeSystem {
@@ -26,9 +26,9 @@ class SlidingSystem final : public OdeSystem {
     bool taut = true;
     bool watches_force = false;  ///< Is kNoForce an event?
     double begun_c = 0.0;
-    double mu_k = 0.0;  ///< Before the drift.
-    double stribeck_rise = 0.0;
-    double place_left = 0.0;  ///< Still to slide, in units of the coefficient; may be infinite.
+    double mu_k = 0.0;           ///< K of the contact before the drift.
+    double stribeck_rise = 0.0;  ///< In place of that of the law.
+    double place_left = 0.0;     ///< Still to slide, in units of the coefficient; may be infinite.
     BeltRate belt;
     DriftFactor drift;
   };
@@ -36,15 +36,16 @@ class SlidingSystem final : public OdeSystem {
   SlidingSystem(const model::Oscillator& oscillator, double gravity_m_per_s2,
                 const std::optional<VelocityDependence>& law);
 
+  /// Sets the piece that all functions below refer to; its belt and drift are those from t = 0 on.
   void begin(const Piece& piece) { piece_ = piece; }
-  /// Error of the difference between c′ and r to be expected, 1/s.
+  /// Sets the expected error of c′ − r, 1/s: the doubt of kBeltSpeed.
   void set_doubt(double doubt_per_s) { doubt_per_s_ = doubt_per_s; }
   [[nodiscard]] const Piece& piece() const noexcept { return piece_; }
 
   [[nodiscard]] OdeState rate(double t_s, const OdeState& y) const override;
   [[nodiscard]] Jacobian jacobian(double t_s, const OdeState& y) const override;
   [[nodiscard]] Events events(double t_s, const OdeState& y) const override;
-  /// c″
+  /// c″, 1/s².
   [[nodiscard]] double acceleration(double t_s, const OdeState& y) const;
   /// How far the sled has slid since the piece began, in units of the coefficient.
   [[nodiscard]] double slid(double t_s, double c) const;

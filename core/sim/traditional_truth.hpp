@@ -1,5 +1,5 @@
 /// \file
-/// Traditional coefficients of the noise-free, continuous force.
+/// Static and kinetic coefficient by a traditional method, from the noise-free, continuous force.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,20 @@
 namespace stickslip::sim {
 
 struct TraditionalTruth {
-  std::optional<double>
-      static_coefficient;  ///< Maximum number method.static_slip after the first slip onset.
-  std::optional<double> kinetic_coefficient;  ///< Mean after the first maximum, over cycles or travel.
+  /// The force at its n-th local maximum after the first slip onset, n = method.static_slip.
+  std::optional<double> static_coefficient;
+  /// Mean of the force over method.kinetic_travel after its first maximum; if that is not set, over
+  /// method.kinetic_cycles cycles from the first maximum on, from maximum to maximum.
+  std::optional<double> kinetic_coefficient;
 };
 
-/// \param scene     oscillates, and has a pull.
-/// \param seed      of the run.
-/// \param onset_s   first slip onset.
-/// \param pull_speed_m_per_s  turns the method's travel into time.
+/// Reads the force by the method, at 2000 points in each free period.
+/// \param scene    with an underdamped oscillator and a pull (pull_of()).
+/// \param seed     of the run.
+/// \param onset_s  first slip onset, true seconds after the start of the scene.
+/// \param pull_speed_m_per_s  turns method.kinetic_travel into time; > 0 if that is set.
 /// \return a coefficient is nullopt if the pull is too short for it.
+/// \throws std::runtime_error if CVODE fails (NumericSolver).
 [[nodiscard]] TraditionalTruth traditional_truth(const Scene& scene, std::uint64_t seed, double onset_s,
                                                  const model::Method& method, double pull_speed_m_per_s);
 

@@ -5,12 +5,12 @@
 ///     sled.follow_to(instant, transducer);
 ///     const double coefficient = transducer.output();
 ///
-/// Each stretch of the force is a sum of motions that solve linear equations: the oscillation h″ = −ω₀² h − γ
-/// h′, a polynomial (its last derivative does not change) and decays (the last of φ_m's derivatives decays).
-/// With the transducer's x′ = A x + b c all are one homogeneous system, whose matrix exponential is the exact
-/// response: no step size, no resonance that needs a case of its own, any damping. [Van Loan, IEEE Trans.
-/// Automat. Contr. 23(3):395–404, 1978; exponential: Higham, SIAM J. Matrix Anal. Appl. 26(4):1179–1193,
-/// 2005]
+/// Each stretch of the force is a sum of motions that solve linear equations: the oscillation
+/// h″ = −ω₀² h − γ h′, a polynomial (its last derivative does not change) and decays (the last of φ_m's
+/// derivatives decays). With the transducer's x′ = A x + b c all are one homogeneous system, whose matrix
+/// exponential is the exact response: no step size, no resonance that needs a case of its own, any damping.
+/// [Van Loan, IEEE Trans. Automat. Contr. 23(3):395–404, 1978; exponential: Higham, SIAM J. Matrix Anal.
+/// Appl. 26(4):1179–1193, 2005]
 #pragma once
 
 #include <array>
@@ -25,7 +25,8 @@
 
 namespace stickslip::sim {
 
-/// Does not allocate after construction. Thread-bound.
+/// Load cell and anti-alias filter: follow() takes the force in, output() is the response. Does not allocate
+/// after construction. Thread-bound.
 class Transducer final : public ForceFollower {
  public:
   /// At least one of load_cell and anti_alias must be given.
@@ -35,12 +36,12 @@ class Transducer final : public ForceFollower {
   Transducer(const std::optional<LoadCellDynamics>& load_cell, const std::optional<AntiAlias>& anti_alias,
              const model::Oscillator& oscillator, double scan_rate_Hz);
 
-  /// At rest and unloaded.
+  /// Returns to rest without force: output() is 0.
   void restart();
 
   void follow(const ForceStretch& stretch) override;
 
-  /// Output coefficient at the end of the force passed so far.
+  /// The response, as a coefficient, at the end of the force passed so far.
   [[nodiscard]] double output() const { return state_[output_]; }
 
  private:

@@ -13,8 +13,8 @@ struct LoadCellDynamics {
 /// Effect `anti_alias`: a Butterworth low-pass; of order 1 it is an RC filter.
 struct AntiAlias {
   static constexpr int kHighestOrder = 8;
-  double cutoff_Hz = 0.0;  ///< Gain 1/√2.
-  int order = 1;
+  double cutoff_Hz = 0.0;  ///< Where the gain is 1/√2.
+  int order = 1;           ///< 1 … kHighestOrder
 };
 
 }  // namespace stickslip::sim

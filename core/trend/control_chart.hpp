@@ -48,8 +48,8 @@ inline constexpr std::int64_t kFewestForLimits = 20;
 /// within twice as many), and values of an excursion wait outside the baseline. With fewer, waiting would
 /// make false alarms too frequent.
 inline constexpr std::int64_t kFullBaseline = 200;
-/// The baseline takes no further values: its mean is known to a hundredth of a standard deviation, a fiftieth
-/// of k.
+/// Most values of the baseline; later ones are not taken into it. Its mean is then known to a hundredth of a
+/// standard deviation, a fiftieth of k.
 inline constexpr std::int64_t kLargestBaseline = 10'000;
 
 /// Average number of values until one arm passes h, for independent normal scores whose mean is
@@ -57,9 +57,10 @@ inline constexpr std::int64_t kLargestBaseline = 10'000;
 /// Montgomery 2012, eq. 9.5]. \param k, h  > 0.
 [[nodiscard]] double one_sided_run_length(double shift, double k = kReferenceValue,
                                           double h = kDecisionInterval);
-/// The same for both arms together: 1/ARL = 1/ARL⁺ + 1/ARL⁻.
+/// Average number of values until either arm passes h: 1/ARL = 1/ARL⁺ + 1/ARL⁻ of one_sided_run_length().
 [[nodiscard]] double run_length(double shift, double k = kReferenceValue, double h = kDecisionInterval);
 
+/// An arm has passed h. Indices count the values that were added, from 0.
 struct ChartAlarm {
   bool rises = false;      ///< Which arm told it.
   std::int64_t onset = 0;  ///< Index of the first value after the arm was 0 last: the estimated change.
@@ -69,6 +70,7 @@ struct ChartAlarm {
   double standard_deviation = 0.0;  ///< Of the baseline at the onset.
 };
 
+/// The chart of one quantity, fed value by value.
 class ControlChart {
  public:
   /// \param value  finite. \return an alarm if this value raises one.
@@ -77,7 +79,9 @@ class ControlChart {
   /// Sets both arms to 0; the baseline stays.
   void restart_arms();
 
+  /// Values added.
   [[nodiscard]] std::int64_t count() const noexcept { return count_; }
+  /// Height of an arm, in standard deviations; 0 after an alarm.
   [[nodiscard]] double upper() const noexcept { return upper_.height; }
   [[nodiscard]] double lower() const noexcept { return lower_.height; }
   /// Values since the arm that rose first was 0: the onset of an alarm to come is one of these.
@@ -94,7 +98,8 @@ class ControlChart {
     double falling = 0.0;
   };
   [[nodiscard]] Scores scores(double value) const;
-  /// The latest value lies beyond the Shewhart limits of the values before it.
+  /// Whether the latest value lies beyond the Shewhart limits of the baseline before it; false while that has
+  /// fewer than kFewestForLimits values.
   [[nodiscard]] bool is_outside() const noexcept { return outside_; }
 
  private:

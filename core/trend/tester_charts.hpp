@@ -28,7 +28,7 @@ struct ChartKind {
   std::string_view name;     ///< Stable between versions: "zero".
   std::string_view unit;     ///< SI, "1" for a ratio or a count.
   std::string_view meaning;  ///< For people; begins a sentence.
-  std::string_view key;      ///< Of its value in a line of the history, with the unit; empty: `reference`.
+  std::string_view key;      ///< Of its value in a line of the tester's history, with the unit; empty: none.
   base::FindingCode code;
 };
 
@@ -36,7 +36,7 @@ struct ChartKind {
 [[nodiscard]] const ChartKind& kind_of(Quantity quantity) noexcept;
 [[nodiscard]] std::optional<Quantity> quantity_from_name(std::string_view name) noexcept;
 
-/// What one finished test gives to the charts; an absent value leaves its chart as it is.
+/// What one finished test gives to the charts. An absent or not finite value adds no point to its chart.
 struct TestValues {
   std::string time;    ///< ISO 8601, when the test began.
   std::string file;    ///< Name of the record, for people.
@@ -44,7 +44,7 @@ struct TestValues {
   std::optional<double> pull_speed_m_per_s;
   std::optional<double> mu_k;
   std::optional<double> delta_mu;
-  /// By Quantity; that of kReference is chosen by TesterCharts.
+  /// By Quantity; that of kReference is not read: TesterCharts takes delta_mu or mu_k.
   std::array<std::optional<double>, kQuantities> values;
 
   bool operator==(const TestValues&) const = default;
@@ -61,7 +61,12 @@ struct StandingAlarm {
   std::string told_file;
 };
 
-enum class Verdict { kOff, kLearning, kInControl, kAlarm };
+enum class Verdict {
+  kOff,        ///< No value yet.
+  kLearning,   ///< Fewer values than kFullBaseline.
+  kInControl,  ///< kFullBaseline values or more.
+  kAlarm       ///< An alarm stands, however many values there are.
+};
 /// "off", "learning", "in control", "alarm".
 [[nodiscard]] std::string_view name(Verdict verdict) noexcept;
 
@@ -75,28 +80,32 @@ struct ChartPoint {
   double lower = 0.0;
 };
 
+/// One chart since its first value, or since its latest restart with a new baseline.
 struct ChartState {
   ControlChart chart;
-  std::optional<double> latest;
+  std::optional<double> latest;  ///< Its latest value.
   std::string latest_file;
-  std::int64_t outside_count = 0;  ///< Values beyond Shewhart limits since the restart.
+  std::int64_t outside_count = 0;  ///< Values beyond Shewhart limits.
   std::optional<StandingAlarm> alarm;
   std::string no_value_reason;    ///< Why the latest test gave no value; empty if it did.
-  std::deque<ChartPoint> points;  ///< The latest kMostPoints since the restart, oldest first.
+  std::deque<ChartPoint> points;  ///< The latest kMostPoints, oldest first.
   static constexpr std::size_t kMostPoints = 200;
 
   [[nodiscard]] Verdict verdict() const noexcept;
 };
 
+/// The charts of one tester. The reference chart takes tests whose sample is the reference paper: S − K, or K
+/// if its first test has no S − K, at that test's pull speed within 5 %.
 class TesterCharts {
  public:
   /// \param reference  name of the sample that is the reference paper; empty: its chart is off.
   explicit TesterCharts(std::string reference = {}) : reference_(std::move(reference)) {}
 
-  /// \return the quantities that this test newly alarms.
+  /// The next test. \return the quantities that it newly alarms; none of a chart whose alarm still stands.
   std::vector<Quantity> add(const TestValues& test);
-  /// Somebody acknowledges. \param baseline_stays  nothing had changed: the values before it remain the
-  /// baseline; false: a new one begins.
+  /// Acknowledges: drops the standing alarm, if there is one, and sets both arms to 0.
+  /// \param baseline_stays  true if nothing had changed: the baseline stays; false: the chart begins anew,
+  /// without any value.
   void restart(Quantity quantity, bool baseline_stays);
 
   [[nodiscard]] const ChartState& state(Quantity quantity) const {
