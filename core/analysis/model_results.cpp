@@ -394,6 +394,7 @@ void Misfit::add(const estimate::Trace& trace, const SlipEstimates& estimates, d
 std::optional<SlipPart> Misfit::place() const noexcept {
   if (!converged_ || !(z_of(whole_) > kSignificant)) return std::nullopt;
   const auto largest = std::ranges::max_element(parts_, {}, [](const Sum& sum) { return residual_of(sum); });
+  if (!(residual_of(*largest) > 0.0)) return std::nullopt;  // Only all sections together tell it.
   return static_cast<SlipPart>(largest - parts_.begin());
 }
 

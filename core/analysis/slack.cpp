@@ -59,8 +59,8 @@ std::string why_slack(std::size_t slack_count, std::size_t slip_count) {
 }
 
 void void_slack_turns(const std::string& why, model::Regime regime, TestResults& results) {
-  results.delta_mu = results.delta_mu_scatter = Estimate::none(why);
-  (regime == model::Regime::kRingDown ? results.mu_s : results.mu_k) = Estimate::none(why);
+  results.delta_mu = results.delta_mu_scatter = results.mu_k = Estimate::none(why);
+  if (regime == model::Regime::kRingDown) results.mu_s = Estimate::none(why);
 }
 
 base::Finding slack_finding(std::size_t slack_count, std::size_t slip_count) {

@@ -19,7 +19,8 @@ inline constexpr std::size_t kLongestName = 200;
 
 /// The text as one line of valid UTF-8. Shown by their numbers: control characters below 0x20 and bytes that
 /// are no UTF-8 (\x1b), other control characters (\u007f, \u009b), what changes the direction of text or
-/// breaks a line (\u202e, \u2028), and characters without width that are no part of words (\u200b, \ufeff).
+/// breaks a line (\u202e, \u2028), and characters without width that are no part of words (\u200b, \ufeff,
+/// tags). Joiners stay, which words need.
 /// All other text, in any language, stays as it is, including a backslash, so that the result cannot be
 /// converted back.
 /// \param colours_stay  true: colour codes stay; the caller has escaped those of untrusted text.

@@ -58,20 +58,24 @@ class ScanWindow {
 
   /// Marks the row of [from, to) with the largest residual as an outlier, if it exceeds
   /// estimate::kStraySigmas. Refused if more than three rows, or one in five, would be marked, or three or
-  /// fewer of [from, to) would be left.
+  /// fewer of [from, to) would be left. Refused too if more rows exceed it than may be marked: then neither
+  /// trajectory describes them, and to leave some out would not help.
   /// \param sigmas_off  residual of a row about the better trajectory, in standard deviations.
   /// \return whether a row was marked.
   template <typename SigmasOff>
   bool leave_out_a_stray(std::size_t from, std::size_t to, SigmasOff sigmas_off) noexcept {
     std::size_t farthest = to;
+    std::size_t count = 0;
     double off = estimate::kStraySigmas;
     for (std::size_t i = from; i < to; ++i) {
-      if (const double z = std::abs(sigmas_off(rows_[i])); z > off) {
+      const double z = std::abs(sigmas_off(rows_[i]));
+      if (z > estimate::kStraySigmas) ++count;
+      if (z > off) {
         off = z;
         farthest = i;
       }
     }
-    return farthest != to && leave_out(farthest, from, to);
+    return farthest != to && leave_out(farthest, count, from, to);
   }
   /// Removes the outlier marks of [from, to).
   void readmit(std::size_t from, std::size_t to) noexcept;
@@ -79,7 +83,8 @@ class ScanWindow {
  private:
   [[nodiscard]] static ScanRow row_of(std::span<const estimate::CyclePoint> together, double first_s,
                                       const model::SharedParameters& shared) noexcept;
-  bool leave_out(std::size_t which, std::size_t from, std::size_t to) noexcept;
+  /// \param count  of outliers, `which` among them.
+  bool leave_out(std::size_t which, std::size_t count, std::size_t from, std::size_t to) noexcept;
 
   std::array<ScanRow, estimate::CycleBuffer::kMostPoints> rows_;
   std::size_t size_ = 0;

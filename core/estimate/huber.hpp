@@ -12,7 +12,7 @@ namespace stickslip::estimate {
 inline constexpr double kHuberLimit = 1.345;
 
 /// HuberSums::residual_sigma() of Gaussian noise: √(E ψ(z) z/E w(z)) with E ψ(z) z = P(|z| ≤ k) = 0.8214 and
-/// E w(z) = 0.8214 + k E₁(k²/2)/√(2π) = 0.9601.
+/// E w(z) = 0.8214 + k E₁(k²/2)/√(2π) = 0.9599.
 inline constexpr double kHuberResidualOfNoise = 0.925;
 
 /// Residual, in standard deviations, beyond which a scan is a missed spike: Gaussian noise exceeds it once in

@@ -64,12 +64,12 @@ struct SlipFit {
 /// step lowers.
 inline constexpr double kFitSettled = 1e-5;
 
-/// Fits all slips at once.
+/// Fits all slips at once. `windows` and SlipFit::shared become the estimate. If the fit does not converge
+/// they are where it stopped; if it cannot begin, the first guess, and SlipFit::scan_count is 0.
 /// \param sigma  noise of one scan, > 0; scales Huber's limit.
-/// \param windows,shared  first guess; `windows` receives the estimate. Each window needs at least four
-///        usable scans.
+/// \param windows,shared  first guess. Each window needs at least four usable scans.
 /// \param prior  of the shared parameters.
-/// \param settled  change of the cost below which the fit has converged whatever the cost's size.
+/// \param settled  The fit has converged when a step changes the cost by at most this plus 1e-10 of it.
 /// \return converged = false without windows; if the first guess is not admissible: ω > 0, r > 0, |γ| < 2ω,
 /// S − K ≥ −6σ; if the fit does not settle in 60 iterations, 200 with a prior; or if the scans do not
 /// determine the parameters.

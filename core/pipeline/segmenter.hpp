@@ -50,8 +50,9 @@ struct SegmenterSettings {
   [[nodiscard]] std::size_t pre_trigger_scans() const noexcept;
 };
 
-/// Deterministic. Decisions during a test depend only on the scans of its record, so that a replay ends at
-/// the same scan. Thread-bound.
+/// Deterministic. Decisions during a test depend only on the scans of its record, the unloaded level before
+/// it (SegmenterSettings::unloaded_level) and commands, so that a replay with all three ends at the same
+/// scan. Thread-bound.
 class Segmenter {
  public:
   enum class Event {

@@ -168,7 +168,8 @@ base::Result<std::filesystem::path> set_aside(const std::filesystem::path& journ
 base::Result<void> publish(const Record& record, const ScanSource& scans, const std::filesystem::path& path,
                            const FileCalls& calls, const TakeEnd& take_end = {}) {
   STICKSLIP_EXPECTS(record.end);
-  STICKSLIP_EXPECTS(record.header.board.quantity != daq::RawQuantity::kCounts || record.header.load_cell);
+  if (record.header.board.quantity == daq::RawQuantity::kCounts && !record.header.load_cell)
+    return base::failure("{}: counts without the gain of a load cell are no force", path.string());
   if (auto is_new = check_new(path); !is_new) return is_new;
   const auto part = with_suffix(path, ".part");
   auto published = build_verified(record, scans, take_end, part, calls);

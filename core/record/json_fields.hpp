@@ -53,8 +53,9 @@ inline void decode(const Json& from, double& value) {
   if (from.is_null()) {
     value = std::numeric_limits<double>::quiet_NaN();
   } else if (from.is_string()) {
-    value =
-        from == "inf" ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
+    const bool is_below = from == "-inf";
+    if (!is_below && from != "inf") throw std::invalid_argument(from.dump() + " is no number");
+    value = (is_below ? -1.0 : 1.0) * std::numeric_limits<double>::infinity();
   } else {
     from.get_to(value);
   }

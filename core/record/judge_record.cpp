@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <new>
 #include <optional>
 
 #include "core/record/hdf_driver.hpp"
@@ -18,6 +19,8 @@ bool attempt(const char* place, Verdict& verdict, const Step& step) {
   try {
     step();
     return true;
+  } catch (const std::bad_alloc&) {
+    throw;  // That is no damage.
   } catch (const std::exception& error) {
     verdict.damage(place, error.what());
     return false;
@@ -133,6 +136,8 @@ void judge_record(const GivenFile& given, const std::filesystem::path& path, Ver
       attempt("process/file_sha256", verdict, [&] { judge_seal(entry.get(), given, verdict); });
       judge_content(entry.get(), verdict);
     });
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
     verdict.kind = "record";
     verdict.damage("file", error.what());

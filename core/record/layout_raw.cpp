@@ -251,6 +251,7 @@ void verify_scans(hid_t entry, const daq::BoardInfo& board, const ScanSource& sc
   if (!scans.has_force() || !has(entry, "truth")) return;
   const GroupHandle truth = open_group(entry, "truth");
   const DatasetHandle column = open_dataset(truth.get(), "coefficient");
+  if (row_count(column, "coefficient") != scans.size()) throw HdfError(kOtherScans);
   std::size_t row = 0;
   scans.for_each_force_piece([&](std::span<const double> force) {
     std::vector<double> back(force.size());

@@ -200,7 +200,8 @@ base::Result<Record> ApartReader::finish(const std::function<bool()>& given_up) 
     }
     return tl::unexpected(base::Error{answer.error().kind, std::move(message), answer.error().worker_died});
   }
-  const char letter = answer->empty() ? kFailure : answer->front();
+  if (answer->empty()) return base::failure("{}: its reader says nothing", path_.string());
+  const char letter = answer->front();
   if (letter != kRead) return tl::unexpected(base::Error{kind_of(letter), answer->substr(1)});
   base::Result<JournalReading> reading = read_journal(child_.memory_file());
   if (!reading || !reading->record.end)

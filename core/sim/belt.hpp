@@ -22,7 +22,8 @@ namespace stickslip::sim {
 [[nodiscard]] double belt_speed_m_per_s(const std::vector<BeltSegment>& belt, double time_s);
 
 /// Smallest (≤ 0) and largest (≥ 0) net travel ∫v dt of the belt, m, from scan 0 to any time up to
-/// duration_s. Ignores halt_when_unloaded, so the true range may be narrower.
+/// duration_s. Ignores halt_when_unloaded: the true range may be narrower, as nothing moves after a segment
+/// that halts in any scene.
 [[nodiscard]] std::pair<double, double> belt_travel_range_m(const std::vector<BeltSegment>& belt,
                                                             double duration_s);
 

@@ -313,16 +313,16 @@ class Importer {
     return {};
   }
 
+  /// This time since 1970 and seconds after it; nullopt beyond the farthest epoch.
+  static std::optional<std::int64_t> later(std::int64_t time_ns, double offset_s) {
+    const bool is_near = std::abs(1e-9 * static_cast<double>(time_ns) + offset_s) < kFarthestEpoch_s &&
+                         std::abs(offset_s) < kFarthestEpoch_s;
+    return is_near ? std::optional{time_ns + std::llround(1e9 * offset_s)} : std::nullopt;
+  }
+
   /// From the first row of the file to the first scan.
   void move_start() {
-    if (!start_ns_ || time_s_.empty()) return;
-    const double offset_s = time_s_.front();
-    if (std::abs(1e-9 * static_cast<double>(*start_ns_) + offset_s) < kFarthestEpoch_s &&
-        std::abs(offset_s) < kFarthestEpoch_s) {
-      *start_ns_ += std::llround(1e9 * offset_s);
-    } else {
-      start_ns_.reset();
-    }
+    if (start_ns_ && !time_s_.empty()) start_ns_ = later(*start_ns_, time_s_.front());
   }
 
   Result<void> add_run(std::size_t begin, std::size_t end) {
@@ -356,7 +356,7 @@ class Importer {
                                request_.path, count - scans, count,
                                base::one_line(dialect_.columns[columns_.value].text, 40));
     }
-    return add_tests(run, rate_Hz);
+    return add_tests(run, rate_Hz, start_of_run(begin));
   }
 
   void tell(const Grid& grid, std::size_t begin) {
@@ -377,7 +377,16 @@ class Importer {
       note("{} rows with the time of the row before left out", doubled);
   }
 
-  Result<void> add_tests(const std::shared_ptr<const record::ScanColumns>& run, double rate_Hz) {
+  /// Time of the first scan of a run, ns since 1970; unknown if its clock began anew.
+  [[nodiscard]] std::optional<std::int64_t> start_of_run(std::size_t begin) const {
+    if (!start_ns_ || begin == 0) return start_ns_;
+    if (!(time_s_[begin] >= time_s_[begin - 1])) return std::nullopt;
+    return later(*start_ns_, time_s_[begin] - time_s_.front());
+  }
+
+  /// \param start_ns  time of the first scan of the run, since 1970.
+  Result<void> add_tests(const std::shared_ptr<const record::ScanColumns>& run, double rate_Hz,
+                         std::optional<std::int64_t> start_ns) {
     record::Record whole;
     record::RecordHeader& header = whole.header;
     header.title = std::filesystem::path{request_.path}.stem().string();
@@ -390,7 +399,6 @@ class Importer {
     header.tester = request_.tester;
     header.sample = request_.sample;
     header.process = request_.process;
-    header.start_realtime_ns = start_ns_;
     const daq::Calibration calibration{header.board, load_cell_.value_or(daq::LoadCell{}),
                                        header.tester.tester().normal_load_N()};
     const base::LongColumn<double>& raw = run->raw;
@@ -404,6 +412,8 @@ class Importer {
     for (const auto& [begin, end] : tests_in(scan, coefficient, rate_Hz)) {
       ImportedTest test{whole, {run, begin, end - begin}};
       daq::ScanIndex next = scan[begin];
+      if (start_ns)
+        test.record.header.start_realtime_ns = later(*start_ns, static_cast<double>(next) / rate_Hz);
       for (std::size_t i = begin; i < end; ++i) {
         if (scan[i] > next)
           test.record.gaps.push_back({next, scan[i] - next, false, daq::GapCause::kMissingScans});

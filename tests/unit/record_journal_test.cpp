@@ -15,6 +15,7 @@
 #include "core/record/fields.hpp"
 #include "core/record/journal.hpp"
 #include "core/record/json_codec.hpp"
+#include "core/record/json_fields.hpp"
 #include "core/record/range_check.hpp"
 #include "tests/support/journal_samples.hpp"
 #include "tests/support/record_equality.hpp"
@@ -259,6 +260,15 @@ TEST(Journal, NumbersOfTheEndThatFitNoColumnAreRefused) {
     }
   });
   EXPECT_EQ(tables + column * static_cast<std::ptrdiff_t>(sizeof(double)), std::ssize(bytes));
+}
+
+TEST(Journal, OnlyTheWordsForInfinityAreNumbers) {
+  double value = 0.0;
+  record::decode(record::Json("-inf"), value);
+  EXPECT_EQ(value, -std::numeric_limits<double>::infinity());
+  record::decode(record::Json("inf"), value);
+  EXPECT_EQ(value, std::numeric_limits<double>::infinity());
+  EXPECT_THROW(record::decode(record::Json("abc"), value), std::invalid_argument);
 }
 
 // CRC-32C finds every single-bit error: no flip anywhere may go unnoticed.

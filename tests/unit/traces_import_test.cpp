@@ -19,6 +19,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::SizeIs;
 
 using TraceImport = Traces;
 
@@ -188,6 +189,24 @@ TEST_F(TraceImport, ReversedRowsStartWithTheFirstScan) {
       "Time,F\n2026-01-01T00:00:01.00Z,3\n2026-01-01T00:00:00.50Z,2\n2026-01-01T00:00:00.00Z,1\n",
       {1.0, 2.0, 3.0});
   EXPECT_EQ(record.header.start_realtime_ns, 1'767'225'600'000'000'000);
+}
+
+// Each test of a trace starts when its own first scan was read.
+TEST_F(TraceImport, TestsOfOneTraceHaveTheirOwnStarts) {
+  // Two pulls of 30 s with a rest of 40 s between them.
+  std::string content = "Time,F\n";
+  for (int i = 0; i < 1200; ++i) {
+    const bool pulled = (i >= 100 && i < 400) || (i >= 800 && i < 1100);
+    content += fmt::format("2026-01-01T00:{:02}:{:02}.{}Z,{:.4f}\n", i / 600, i / 10 % 60, i % 10,
+                           (pulled ? 0.3 : 0.0) + 1e-4 * (i * 7919 % 13));
+  }
+  const auto imported = import(content);
+  ASSERT_TRUE(imported) << imported.error().message;
+  ASSERT_THAT(imported->tests, SizeIs(2));
+  const record::Record second = test::in_memory(imported->tests[1]);
+  EXPECT_EQ(imported->tests[0].record.header.start_realtime_ns, 1'767'225'600'000'000'000);
+  EXPECT_GT(second.scan.front(), 400);
+  EXPECT_EQ(second.header.start_realtime_ns, 1'767'225'600'000'000'000 + 100'000'000 * second.scan.front());
 }
 
 TEST_F(TraceImport, UnitThatChangesBetweenCellsIsRefused) {
