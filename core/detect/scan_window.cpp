@@ -110,7 +110,7 @@ bool ScanWindow::leave_out(std::size_t which, std::size_t count, std::size_t fro
     return static_cast<std::size_t>(std::ranges::count_if(rows, &ScanRow::stray));
   };
   const std::size_t left_out = 1 + strays(all());
-  if (strays(all()) + count > kMostStrays || kRowsPerStray * left_out > size_) return false;
+  if (left_out > kMostStrays || kRowsPerStray * (left_out - 1 + count) > size_) return false;
   const std::size_t left = to - from - strays(all().subspan(from, to - from)) - 1;
   if (left <= kFreeParameters) return false;
   rows_[which].stray = true;

@@ -58,7 +58,7 @@ class ScanWindow {
 
   /// Marks the row of [from, to) with the largest residual as an outlier, if it exceeds
   /// estimate::kStraySigmas. Refused if more than three rows, or one in five, would be marked, or three or
-  /// fewer of [from, to) would be left. Refused too if more rows exceed it than may be marked: then neither
+  /// fewer of [from, to) would be left. Refused too if more than one row in five exceeds it: then neither
   /// trajectory describes them, and to leave some out would not help.
   /// \param sigmas_off  residual of a row about the better trajectory, in standard deviations.
   /// \return whether a row was marked.
