@@ -208,6 +208,31 @@ bool is_overdamped(const SlipEstimates& estimates) noexcept {
   return gamma + kSigmasOfDamping * error > 2.0 * estimates.fit.shared.omega;
 }
 
+/// Slips that follow one another faster than the fit's own free oscillation: with rests between them they
+/// would come more slowly. \return what contradicts; empty if nothing does.
+std::string faster_than_free(const SlipEstimates& estimates) {
+  constexpr double kSure = 3.0;
+  constexpr double kMargin = 0.05;  // For what the model leaves out.
+  const double omega = estimates.fit.shared.omega;
+  const double free_s = 2.0 * std::numbers::pi / omega;
+  const double share = 1.0 + kMargin + kSure * std::sqrt(estimates.fit.shared_covariance(0, 0)) / omega;
+  for (std::size_t i = 0; i + 1 < estimates.ends.size(); ++i) {
+    if (estimates.ends[i] != SlipEnd::kCaptured || !estimates.has_window(i) || !estimates.has_window(i + 1))
+      continue;
+    const estimate::SlipWindow& one = estimates.windows[estimates.window_of_slip[i]];
+    const estimate::SlipWindow& next = estimates.windows[estimates.window_of_slip[i + 1]];
+    const double period_s = next.slip.onset_s - one.slip.onset_s;
+    const double error_s = std::hypot(estimates.fit.onset_error_s(one), estimates.fit.onset_error_s(next));
+    if ((period_s + kSure * error_s) * share < free_s) {
+      return fmt::format(
+          "slips {:.3g} s apart with rests between them cannot come faster than the fit's oscillation, "
+          "{:.3g} s",
+          period_s, free_s);
+    }
+  }
+  return {};
+}
+
 /// A slip whose end contradicts its own numbers: the sled sticks again exactly where Q is below the threshold
 /// [22], and without damping always. Asked of ends that are decided, and of oscillations that go on over
 /// three slips, where the belt is constant: an acceleration shifts the threshold (docs/ramp.md). γ and Q, by
@@ -303,7 +328,8 @@ std::string why_not(const SlipEstimates& estimates, double sigma) {
         "the model does not describe this friction: its damping, {:.2g} +- {:.1g} 1/s, would be negative",
         gamma, error);
   }
-  return contradiction(estimates);
+  const std::string by_ends = contradiction(estimates);
+  return by_ends.empty() ? faster_than_free(estimates) : by_ends;
 }
 
 }  // namespace

@@ -21,10 +21,11 @@ TEST(Consistency, NoNumberOfATestContradictsAnother) {
     std::uint64_t seed;
     std::uint64_t test;
   };
-  // The last two stuck, and their fits do not tell S from K.
+  // The last ones: two stuck, and their fits do not tell S from K; the damping of one is so uncertain that it
+  // may stick, at a period below that of its oscillation; one scatters.
   std::vector<Case> cases;
   for (std::uint64_t test = 0; test < 60; ++test) cases.push_back({7, test});
-  cases.insert(cases.end(), {{1, 2003}, {2, 1919}});
+  cases.insert(cases.end(), {{1, 2003}, {2, 1919}, {1, 14960}, {1, 11417}});
   const auto bases = scenes_with_one_pull(std::filesystem::path{STICKSLIP_SOURCE_DIR} / "config/scenes");
   ASSERT_TRUE(bases) << bases.error().message;
   sweep::SweepPlan plan;
