@@ -373,7 +373,7 @@ TestResults TestAnalysis::finish() {
     }
     end_detection();
     keep_cycles(trace, estimates, slips, [&](const detect::Fall& slip) {
-      return results.delta_mu.value && !slack.holds(trace, slip);
+      return results.delta_mu.value && !check.voids() && !slack.holds(trace, slip);
     });
   }
   period_results(trace, slips, results);

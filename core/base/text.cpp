@@ -43,7 +43,11 @@ void add_shown(std::string& out, std::string_view text, const Character& charact
   if (!character.valid || character.code < 0x20) {
     out += fmt::format("\\x{:02x}", static_cast<unsigned>(static_cast<unsigned char>(text.front())));
   } else if (deceives(character.code)) {
-    out += fmt::format("\\u{:04x}", static_cast<unsigned>(character.code));
+    // As in JSON: two halves of UTF-16 beyond four digits.
+    const auto code = static_cast<unsigned>(character.code);
+    out += code > 0xFFFFU ? fmt::format("\\u{:04x}\\u{:04x}", 0xD800U + ((code - 0x10000U) >> 10U),
+                                        0xDC00U + (code & 0x3FFU))
+                          : fmt::format("\\u{:04x}", code);
   } else {
     out += text.substr(0, character.size);
   }

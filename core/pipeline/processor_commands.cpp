@@ -177,10 +177,10 @@ void Processor::follow_bench() {
 }
 
 void Processor::watch_bench() {
+  ++bench_scans_;
   const Patience given = patience(bench_.state(), settings_.automatic);
   if (given.trouble == BenchTrouble::kNone) return;
-  if (++bench_scans_ == std::llround(given.longest_s * settings_.analysis.scan_rate_Hz))
-    trouble(given.trouble);
+  if (bench_scans_ == std::llround(given.longest_s * settings_.analysis.scan_rate_Hz)) trouble(given.trouble);
 }
 
 void Processor::trouble(BenchTrouble trouble) {

@@ -47,7 +47,8 @@ sim::Scene scene_of(const std::filesystem::path& file) {
 using Fault = std::function<double(base::ScanIndex, double)>;
 
 analysis::TestResults results_of(const sim::Scene& scene, std::uint64_t seed, const Fault& fault = {},
-                                 detect::EstimatorTier estimator = detect::EstimatorTier::kFit) {
+                                 detect::EstimatorTier estimator = detect::EstimatorTier::kFit,
+                                 base::LongColumn<detect::Cycle>* cycles = nullptr) {
   const daq::Calibration calibration = sweep::calibration_of(scene);
   analysis::AnalysisSettings settings;
   settings.scan_rate_Hz = scene.scan_rate_Hz;
@@ -66,7 +67,9 @@ analysis::TestResults results_of(const sim::Scene& scene, std::uint64_t seed, co
         analysis.add(scan, coefficient, saturated);
       },
       [&](base::ScanIndex first, std::int64_t count) { analysis.gap(first, count); });
-  return analysis.finish();
+  analysis::TestResults results = analysis.finish();
+  if (cycles != nullptr) *cycles = analysis.take_cycles();
+  return results;
 }
 
 std::vector<std::string> codes(const analysis::TestResults& results) {
@@ -108,6 +111,19 @@ TEST(SignalFindings, AnAmplifierThatClipsIsFoundAndNoCoefficientIsGiven) {
     EXPECT_THAT(codes(clipped), Contains("clipped"));
     expect_void(clipped, "clipped: the force above 0.3");
     EXPECT_TRUE(clipped.oscillation_frequency.value);
+  }
+}
+
+// What is pooled by slip comes from the rows of the cycles.
+TEST(SignalFindings, CyclesOfAClippedTestHaveNoCoefficientEither) {
+  for (const double rail : {1.0, 0.36}) {
+    base::LongColumn<detect::Cycle> cycles;
+    results_of(
+        stick_slip(), 3, [&](base::ScanIndex, double force) { return std::min(force, rail); },
+        detect::EstimatorTier::kFit, &cycles);
+    ASSERT_FALSE(cycles.empty());
+    for (std::size_t i = 0; i < cycles.size(); ++i)
+      EXPECT_EQ(std::isfinite(std::as_const(cycles)[i].delta_mu), rail == 1.0) << rail << ' ' << i;
   }
 }
 
