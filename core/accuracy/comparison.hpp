@@ -30,7 +30,9 @@ struct MotionCase {
 struct MethodMeasurement {
   std::string method;
   std::string setting;
-  std::string lacks;  ///< Reason why the method cannot compute this motion; empty if it can.
+  /// Reason why the method cannot compute this motion, or gave up; empty: neither. If set, the numbers below
+  /// mean nothing.
+  std::string lacks;
   /// Largest difference of the coefficient from the reference; infinity if a value is not finite. Nullopt if
   /// `lacks` is set, and if the reference is CVODE and the values are equal to its in every bit.
   std::optional<double> largest_error;

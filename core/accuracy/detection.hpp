@@ -58,7 +58,7 @@ struct DetectionRow {
   std::string estimator;
   std::string setting;
   std::string reason;                  ///< Why there is no estimate; empty if there is.
-  std::optional<double> error;         ///< Estimate less truth, of S − K; nullopt without either.
+  std::optional<double> error;         ///< Estimate less truth, of S − K; nullopt unless both exist.
   std::optional<double> us_per_cycle;  ///< Time of the test over its true cycles; nullopt if it has none.
 };
 

@@ -44,6 +44,7 @@ enum class GoesOn { kYes, kNo, kUndecided };
 
 /// Whether the oscillation persists: its range exceeds half of the first one after so many cycles that a
 /// ring-down would be well below that. kUndecided if the method reports an undecided capture.
+/// \throws std::runtime_error if the method gives up; so do grazing_table() and apparent_threshold().
 /// \param method  its lacks() is empty for grazing_motion().
 /// \param gamma_over_2omega  > 0.
 /// \param Q  > 0.
@@ -58,7 +59,7 @@ enum class GoesOn { kYes, kNo, kUndecided };
 
 /// Q at which this method's oscillation begins to decay, by bisection. Undecided counts as decaying.
 /// \param low,high  the oscillation persists at low and decays at high.
-/// \param width  final width of the bracket, > 0.
+/// \param width  final width of the bracket, > 1e-15 high: one below rounding is never reached.
 [[nodiscard]] double apparent_threshold(const Method& method, double gamma_over_2omega, double low,
                                         double high, double width);
 

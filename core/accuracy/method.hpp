@@ -19,7 +19,8 @@ namespace stickslip::accuracy {
 
 /// Results of a run beside the coefficient.
 struct RunOutcome {
-  std::int64_t capture_count = 0;    ///< Slips that ended because the sled reached the belt's speed.
+  /// Slips that ended because the sled reached the belt's speed; for smoothed friction see make_tanh().
+  std::int64_t capture_count = 0;
   std::int64_t undecided_count = 0;  ///< Captures, found or not, that the method reports as undecided.
 };
 
@@ -66,6 +67,7 @@ inline constexpr double kStribeckOverTanh = 3.0;
 ///     μ(V) = (K + (S − K) e^(−(V/ρw)²)) tanh(V/w).
 /// [the usual combination of Stribeck's curve and tanh: Andersson, Söderberg and Björklund, Tribology
 ///  International 40(4):580–587, 2007, (8)]
+/// A capture is counted where the speeds differ by less than w, having differed by more than ρw.
 /// \param width  w over the belt's fastest speed, > 0; the step follows from it by stability.
 [[nodiscard]] std::unique_ptr<Method> make_tanh(double width, double stribeck_over_tanh = kStribeckOverTanh);
 

@@ -17,7 +17,8 @@ using Real = boost::multiprecision::cpp_dec_float_50;
 
 [[nodiscard]] inline Real pi50() { return boost::math::constants::pi<Real>(); }
 
-/// c(t) of [11], solved from the characteristic equation; any ω². c(0) = K + D, c′(0) = r.
+/// c(t) of [11], solved from the characteristic equation; any ω². c(0) = K + D, c′(0) = r. The functions that
+/// seek a first time require γ ≥ 0.
 struct Oscillation50 {
   Real K, D, r, gamma, omega_squared;
 

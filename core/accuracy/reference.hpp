@@ -31,7 +31,7 @@ class Reference {
 
   /// Computes the coefficient at the next scans, rounded to double.
   void next(std::span<double> coefficient);
-  /// Skips `scans` scans; takes time only for the events between.
+  /// Skips `scans` scans, ≥ 0; takes time only for the events between.
   void skip(std::int64_t scans);
   /// The coefficient at the next scan, with all digits; does not advance.
   [[nodiscard]] Real now();

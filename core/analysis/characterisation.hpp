@@ -66,7 +66,7 @@ struct TesterCheck {
   std::vector<base::Finding> findings;  ///< kTesterChanged and kPullSpeed, if they apply.
 
   [[nodiscard]] bool agrees() const noexcept { return probability >= kDisagreement; }
-  /// The characterisation is used for this test.
+  /// The characterisation may be used for this test.
   [[nodiscard]] bool used() const noexcept { return probability >= kNotThisTester; }
 };
 

@@ -39,7 +39,7 @@ struct MeasuredTest {
   std::string grade{};                   ///< Of the paper; empty if not stated.
   std::optional<double> stick_time_s{};  ///< mean_stick_time_s() of its cycles.
   BudgetFacts budget_facts{};
-  std::vector<RestGroup> rests{};  ///< group_by_rest() of its cycles; empty at one speed.
+  std::vector<RestGroup> rests{};  ///< group_by_rest() of its cycles; empty if they have no pull speeds.
   bool speed_changes = false;      ///< It has no Q, and its slips are at several pull speeds.
 };
 
@@ -65,7 +65,7 @@ struct GroupQuantity {
 /// delta_mu over the tests whose slips.count is not 0.
 [[nodiscard]] PooledDeltaMu pool_tests(std::span<const MeasuredTest* const> tests);
 
-/// Tests at one pull speed, of one grade and one regime unless these are pooled.
+/// Tests at one pull speed, of one grade and one grouping_regime() unless these are pooled.
 struct SpeedGroup {
   std::optional<double> pull_speed_m_per_s;              ///< Of the first test.
   std::vector<std::size_t> tests;                        ///< Indices among all tests.

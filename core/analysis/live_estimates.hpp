@@ -46,8 +46,8 @@ struct LiveSettlement {
 
 /// Estimates of a test without a fit, in place of estimate_in_sections(). Values are given to S, K and S − K
 /// (means over the live cycles, TierMeans::fill()), the scatter of S − K, and the amplitude (half the mean
-/// drop of all slips). How a slip ended counts as unknown beside a gap, and for the last slip, in which the
-/// pull ended. The caller sets rung and rung_reason; the misfit is empty.
+/// drop of all slips). How a slip ended counts as unknown beside a gap, and for the last slip. The caller
+/// sets rung, rung_reason and model_describes, which is left true; misfit and tester are empty.
 /// \param slips  of the whole test, not empty; the result has one cycle for each.
 /// \param scratch  folder for the columns of a long test; empty: memory.
 [[nodiscard]] TestEstimates estimates_from_live(const estimate::Trace& trace,

@@ -22,8 +22,9 @@ namespace stickslip::analysis {
 inline constexpr double kLargestResidualSigmas = 5.0;
 
 /// Whether the fit converged, its residuals are at most kLargestResidualSigmas σ, its damping is neither
-/// significantly negative nor overdamped, and, on a constant belt, no slip certainly ended otherwise than its
-/// Q and the threshold [22] say.
+/// significantly negative nor, within two standard errors, overdamped, no slips with a rest between them
+/// certainly come faster than its oscillation, and, on a constant belt, no slip certainly ended otherwise
+/// than its Q and the threshold [22] say.
 /// \param sigma  noise of one scan.
 [[nodiscard]] bool model_describes(const SlipEstimates& estimates, double sigma);
 
@@ -35,7 +36,8 @@ inline constexpr std::array<std::string_view, 4> kSlipPartNames{"rise", "peak", 
 /// slip.
 class Misfit {
  public:
-  /// Adds the residuals of a section's fit. Of a fit that did not converge only their size counts.
+  /// Adds the residuals of a section's fit. Of a fit that did not converge only their size counts; one that
+  /// did not begin adds nothing.
   /// \param sigma  noise of one scan.
   void add(const estimate::Trace& trace, const SlipEstimates& estimates, double sigma);
   /// Adds the residuals of other sections.
@@ -43,13 +45,13 @@ class Misfit {
 
   /// Standard deviation of the residuals, in σ; 1 for noise alone, 0 without a fit.
   [[nodiscard]] double residual_sigmas() const noexcept { return residual_of(whole_); }
-  /// Standard deviation of the residuals in one part of the slips, in σ, over the sections whose residuals
-  /// are significantly large; 0 if none has such. The fall is from 90 to 10 % of the drop.
+  /// Standard deviation of the residuals in one part of the slips, in σ, over the sections whose fit
+  /// converged and left significantly large ones; 0 if none. The fall is from 90 to 10 % of the drop.
   [[nodiscard]] double residual_sigmas(SlipPart part) const noexcept {
     return residual_of(parts_[static_cast<std::size_t>(part)]);
   }
-  /// Part with the largest residuals; nullopt unless their size is significant in the whole test and every
-  /// fit converged.
+  /// Part with the largest residuals; nullopt unless their size is significant in the whole test and in a
+  /// section, and every fit converged.
   [[nodiscard]] std::optional<SlipPart> place() const noexcept;
   /// Systematic residual, in σ, with its standard error: √(residual² − 1), at least 0; if repeats(), the root
   /// of MeanResidual::square() where that is more. Absent if a fit did not converge, or without a fit.
@@ -93,10 +95,10 @@ class Misfit {
 
 /// Fills mu_s, mu_k, delta_mu, omega, gamma_over_2omega, Q, Q_threshold, threshold_speed,
 /// slip_speed_ratio_threshold, amplitude and delta_mu_scatter, each with its standard error or the reason why
-/// it is absent; calls escape_results(). S, K and S − K are means over the slips that began from sticking. Of
-/// three or more the first and those after a hold are left out, unless estimates.first_counts, and so are
-/// slips that tell S − K too badly. Where neighbouring slips are correlated, the standard errors of S, K and
-/// S − K are those of means that wander.
+/// it is absent; calls escape_results(). S, K and S − K are those of estimates.uniform, or else means over
+/// the slips that began from sticking, without those that tell S − K too badly. Of three or more, the first
+/// and those after a hold are left out, too, unless estimates.first_counts or no other is left. Where
+/// neighbouring slips are correlated, the standard errors of these means are those of means that wander.
 ///
 /// The systematic uncertainty of S and S − K is γ v/g: whether the damper's force counts at the slip onset is
 /// a convention that no trace can decide (here: spring only, [Penner 1995, (13)]). If no slip stuck again,
@@ -106,7 +108,8 @@ class Misfit {
 /// If model_describes() is false, all of these are absent but the amplitude, then half the mean drop of
 /// `slips`; so are pull_speed_measured and the results of feature_results(). Q, Q_threshold and
 /// threshold_speed are absent if S − K is not positive, the latter two also if γ is not positive; Q and
-/// slip_speed_ratio_threshold if the pull speed changes; delta_mu_scatter with fewer than three slips.
+/// slip_speed_ratio_threshold unless estimates.belt.has_one_speed(); delta_mu_scatter with fewer than three
+/// slips that are not left out.
 /// \param misfit  of this section.
 /// \param tester  only its gravity is read.
 /// \param sigma  noise of one scan.
@@ -123,7 +126,8 @@ void escape_results(const SlipEstimates& estimates, TestResults& results);
 void no_model_results(const std::string& reason, TestResults& results);
 
 /// Table of cycles, one row for each slip. Onset, capture, stick and slip times, S − K and slip_speed_ratio
-/// are NaN where the fit did not converge, and for a slip that did not begin from sticking or has no window.
+/// are NaN where the fit did not converge, and for a slip that did not begin from sticking or has no window;
+/// capture and slip time also unless it ended in sticking, stick time also unless its beginning is known.
 /// The caller sets first_scan, the evidence of capture, and the flags for spikes, gaps and saturation.
 [[nodiscard]] std::vector<detect::Cycle> cycle_table(const estimate::Trace& trace,
                                                      std::span<const detect::Fall> slips,

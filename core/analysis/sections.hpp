@@ -49,7 +49,7 @@ struct SectionSettings {
   std::filesystem::path scratch{};  ///< Folder for the columns of a long test; empty: memory.
   /// Most slips of a section, > 2. Where the pull speed changes, all slips are one section whatever this is.
   std::size_t most = kMostSlipsTogether;
-  bool first_counts = false;  ///< Means include the first slip of the test.
+  bool first_counts = false;  ///< Means include the first slip of the test and those after a hold.
   bool on_threads = false;    ///< Fits the next section beside this one; the estimates are the same.
 };
 

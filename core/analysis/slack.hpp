@@ -38,7 +38,8 @@ struct Slack {
 [[nodiscard]] std::string why_slack(std::size_t slack_count, std::size_t slip_count);
 
 /// Sets to absent what the turning points of mostly slack slips do not tell: S − K, its scatter, and K; in a
-/// ring-down S in place of K. \param why  the reason that they get.
+/// ring-down S, too.
+/// \param why  the reason that they get.
 void void_slack_turns(const std::string& why, model::Regime regime, TestResults& results);
 
 /// Code kSlack.

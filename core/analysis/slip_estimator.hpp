@@ -21,13 +21,14 @@ namespace stickslip::analysis {
 enum class SlipEnd {
   kCaptured,  ///< In sticking.
   kFree,      ///< The oscillation went on without sticking.
-  kUnknown,   ///< Not observed: the trace or the pull ended first, or a break follows.
+  kUnknown,  ///< Not told. So is the last slip of each pull, as only the next fall tells, and a slip before a
+             ///< break or with too few scans.
 };
 
 /// Result of estimate_slips().
 struct SlipEstimates {
-  /// Marks a slip without a window, because the model does not describe it: the pull ended in it, or it
-  /// follows a gap that hides its beginning.
+  /// Marks a slip without a window: the pull ended in it, or a break hides its beginning. Those after that
+  /// one have none either, until a slip has ended in sticking.
   static constexpr std::size_t kNoWindow = static_cast<std::size_t>(-1);
 
   estimate::Drift drift;                      ///< Drift of the trace; fitted S and K are without it.
@@ -38,10 +39,11 @@ struct SlipEstimates {
   estimate::SlipFit fit;
   model::SharedParameters guess;  ///< By turning points and slopes: where the fit began.
   /// Fit of one S and one K to all slips but the first (with it if first_counts). Nullopt if the slips differ
-  /// by more than noise, one did not end in sticking, they are fewer than three, or the pull speed changes.
+  /// by more than noise, one did not end in sticking, they are fewer than three, `belt` is not constant, or a
+  /// fit did not converge.
   std::optional<estimate::UniformFit> uniform;
   model::BeltMotion belt;     ///< Belt speed over the time of the trace.
-  bool first_counts = false;  ///< Means include the first slip.
+  bool first_counts = false;  ///< Means include the first slip and those after a hold.
 
   [[nodiscard]] bool has_window(std::size_t slip) const noexcept { return window_of_slip[slip] != kNoWindow; }
 
@@ -51,15 +53,18 @@ struct SlipEstimates {
   [[nodiscard]] double static_coefficient(const estimate::SlipWindow& window) const;
 };
 
-/// Prior that holds γ/2ω at the typical value and leaves ω free: for slips whose shape tells no γ.
+/// Prior for slips whose shape tells no γ. It holds γ/2ω at model::kTypicalGammaOver2Omega and leaves ω
+/// nearly free: ± 50 % about π over the median time from peak to trough. It says nothing of the stick rate.
+/// \param slips  not empty.
 [[nodiscard]] estimate::SharedPrior held_damping(const estimate::Trace& trace,
                                                  const base::LongColumn<detect::Fall>& slips);
 
-/// Decides how each slip ended and fits the model. Where no fit succeeds, `fit.converged` is false.
+/// Decides how each slip ended and fits the model. Where no fit converges, `fit.converged` is false, and the
+/// result is where the first try stopped.
 /// \param slips  falls that are slips, in the order of time, not empty.
 /// \param sigma  noise of one scan, > 0.
 /// \param prior  of ω, γ and the stick rate.
-/// \param first_counts  means and `uniform` include the first slip.
+/// \param first_counts  means include the first slip and those after a hold, and `uniform` the first.
 [[nodiscard]] SlipEstimates estimate_slips(const estimate::Trace& trace, std::span<const detect::Fall> slips,
                                            double sigma, const estimate::SharedPrior& prior = {},
                                            bool first_counts = false);

@@ -22,6 +22,7 @@ namespace stickslip::analysis {
 
 /// Stick rate at the largest belt speed, 1/s: median slope of the rises, each between 30 and 70 % of its
 /// height, where the sled sticks if it does at all.
+/// \param slips  not empty.
 [[nodiscard]] double slope_of_sticks(const estimate::Trace& trace, std::span<const detect::Fall> slips);
 
 /// ω from half periods, the typical γ/2ω, and the stick rate from the loading, or from the sticks if the

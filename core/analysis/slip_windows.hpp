@@ -32,7 +32,8 @@ namespace stickslip::analysis {
 /// Whether a break lies between slip i − 1 and slip i, or in the rise to the first slip.
 [[nodiscard]] bool follows_a_break(const estimate::Trace& trace, std::span<const detect::Fall> slips,
                                    std::size_t i);
-/// The first scan after the pull in which the slip lies; the size of the trace if the speed is constant.
+/// The first scan after the pull in which the slip lies; the size of the trace if there is none, as at
+/// constant speed.
 [[nodiscard]] std::size_t end_of_pull(const estimate::Trace& trace, const detect::Fall& slip);
 /// Whether the pull ended during the last slip: the force after its trough does not rise as in a stick. False
 /// with fewer than four slips, or if the trace ends or breaks too early to show that.

@@ -92,14 +92,15 @@ class TestAnalysis {
   /// only spikes, gaps and lost scans are counted.
   [[nodiscard]] TestResults finish();
 
-  /// After finish(): one cycle for each slip; empty if there is none.
+  /// After finish(): one cycle for each slip; empty if there is none. Without S − K where that is absent.
   [[nodiscard]] const base::LongColumn<detect::Cycle>& cycles() const noexcept { return cycles_; }
   /// Moves the cycles out.
   [[nodiscard]] base::LongColumn<detect::Cycle> take_cycles() { return std::exchange(cycles_, {}); }
   /// After finish(): the tester's parameters from this test alone, without settings.prior; nullopt unless
   /// such a fit describes the test.
   [[nodiscard]] const std::optional<TesterEstimate>& tester() const noexcept { return tester_; }
-  /// After finish(): check against settings.prior.coupling; nullopt without it or without tester().
+  /// After finish(): check against settings.prior.coupling; nullopt without it, without tester(), or if the
+  /// fit with that prior did not converge.
   [[nodiscard]] const std::optional<TesterCheck>& tester_check() const noexcept { return tester_check_; }
   /// After finish(): scans that were found to be spikes.
   [[nodiscard]] const std::vector<base::ScanIndex>& spikes() const noexcept { return spikes_; }

@@ -8,8 +8,8 @@
 
 namespace stickslip::analysis {
 
-/// Means of S, K and S − K over cycles, in fixed memory. The first cycle, often not representative [Penner
-/// 1995], is left out if there are others, unless first_counts.
+/// Means of S, K and S − K over cycles, in fixed memory. A cycle with kCycleIsFirst, often not representative
+/// [Penner 1995], is left out if others follow, unless first_counts.
 class TierMeans {
  public:
   explicit TierMeans(bool first_counts = false) noexcept : leaves_out_first_(!first_counts) {}

@@ -16,15 +16,17 @@ struct TraditionalCoefficients {
   /// Largest of the three scans about the peak of slip method.static_slip; absent with fewer slips.
   Estimate static_coefficient;
   /// Mean over the method's cycles, peak to peak, or over its travel after the first peak; absent if the
-  /// trace is shorter.
+  /// trace ends before.
   Estimate kinetic_coefficient;
 };
 
-/// Means leave out scans that are not usable, and those during which the belt stood still.
+/// Means leave out scans that are not usable, and those during which the belt stood still. With fewer peaks
+/// than the method's cycles need, the mean goes on over mean periods if the trace lasts so long; with a
+/// single slip there is none over cycles.
 /// \param trace  not empty.
 /// \param slips  in the order of time. Without slips there is no static coefficient, and the kinetic one is
-///        the mean of the trace without loading and unloading; a travel window then counts from the end of
-///        the loading.
+///        the mean from the first to the last scan of at least half the largest force; a travel window then
+///        counts from that first scan.
 /// \param pull_speed_m_per_s  nominal, > 0; without it a travel window has no value.
 [[nodiscard]] TraditionalCoefficients traditional_coefficients(const estimate::Trace& trace,
                                                                const base::LongColumn<detect::Fall>& slips,

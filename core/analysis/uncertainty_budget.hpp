@@ -25,7 +25,8 @@ inline constexpr double kCoverageFactor = 2.0;
 /// The quantities that have a budget: S − K, static, kinetic. Indices of quantities().
 inline constexpr std::array<std::size_t, 3> kBudgetQuantities{4, 0, 1};
 
-/// What a budget needs beside the results of a test.
+/// What a budget shows beside the results of a test; all may be unknown. Pull speed and method matter to the
+/// kinetic coefficient alone.
 struct BudgetFacts {
   std::optional<double> step_coefficient{};    ///< One A/D step; nullopt if unknown.
   std::optional<double> pull_speed_m_per_s{};  ///< Planned.
@@ -75,7 +76,8 @@ struct UncertaintyBudget {
 
 /// Budget of one result of a test; nullopt if that has no value. The random part is the standard error, or of
 /// the static coefficient, which is one scan, the noise of a scan. The systematic parts are those of the
-/// estimate. \param quantity  one of kBudgetQuantities.
+/// estimate.
+/// \param quantity  quantities()[i] with i in kBudgetQuantities.
 [[nodiscard]] std::optional<UncertaintyBudget> test_budget(const TestResults& results,
                                                            const Quantity& quantity,
                                                            const BudgetFacts& facts);

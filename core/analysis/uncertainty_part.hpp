@@ -72,8 +72,8 @@ struct UncertaintyPart {
 };
 
 /// Adds parts to those of the estimate and to its total: independent ones in quadrature, then the sum of the
-/// others as it is. A part that is there already grows by the same rule. Add independent parts last: only
-/// then the total is total_of() the parts. Does nothing to an estimate without a value.
+/// others as it is. A part that is there already grows by the same rule. Add independent parts last, in calls
+/// of their own: only then the total is total_of() the parts. Does nothing to an estimate without a value.
 void add_systematic(Estimate& estimate, std::initializer_list<UncertaintyPart> parts);
 void add_systematic(Estimate& estimate, UncertaintySource source, double size);
 

@@ -14,7 +14,7 @@ class Clock {
   virtual ~Clock() = default;
 
   /// Time since an arbitrary origin. It never goes back, is not slewed by NTP, and steps only after a suspend
-  /// of the computer, by its length.
+  /// of the computer, by its length times the clock's speed.
   [[nodiscard]] virtual std::int64_t monotonic_ns() const = 0;
   /// Time for which the computer has been suspended since the clock was made, by the computer's own time even
   /// if the clock is accelerated. A suspend shorter than 10 ms is not seen.

@@ -1,5 +1,6 @@
 /// \file
-/// Contract checks: if a caller breaks a documented precondition, the program prints the place and aborts.
+/// Contract checks: if a caller breaks a checked precondition, such as one marked "(contract)", the program
+/// prints the place and aborts. Other preconditions are not checked.
 /// Never used for bad input or failures of board and disk, which are values (result.hpp).
 #pragma once
 

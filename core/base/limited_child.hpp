@@ -29,7 +29,7 @@ struct WorkLimits {
   /// Processor time of the child, not wall time: a child that waits is not ended. 0: no limit.
   std::chrono::milliseconds processor_time{0};
   /// Bytes of address space that the child may map in addition to what it has mapped when the question comes.
-  /// 0: nothing in addition. No limit under a sanitizer.
+  /// 0: nothing in addition. The memory file does not count. No limit under a sanitizer.
   std::uint64_t memory = 0;
 };
 
@@ -79,13 +79,13 @@ class LimitedChild {
                                         const std::function<bool()>& given_up = {});
 
   /// The two halves of ask(), to do other work between them. A second begin() without answer() discards the
-  /// answer and its child. answer() needs a begin() before it (contract). Errors of begin(): kFailure if no
-  /// child can be started; of answer(): those of ask().
+  /// answer and its child. answer() needs a begin() before it that succeeded (contract). Errors of begin():
+  /// kFailure if no child can be started; of answer(): those of ask().
   [[nodiscard]] Result<void> begin(std::string_view question, const WorkLimits& limits);
   [[nodiscard]] Result<std::string> answer(const std::function<bool()>& given_up = {});
 
-  /// Path of the memory file, as the latest answer left it. This process can open it until the next question,
-  /// which empties it.
+  /// Path of the memory file, as the latest answer left it; there is none before the first question. This
+  /// process can open it until the next question, which empties it, or the end of this object.
   [[nodiscard]] std::string memory_file() const;
 
  private:

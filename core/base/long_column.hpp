@@ -6,7 +6,7 @@
 ///     for (const double value : std::as_const(force)) …
 ///
 /// Without a folder it is a vector in blocks. With a folder, kResident blocks stay in memory, the last one
-/// and those read latest; the others are read from an unnamed file there, which is made when it is needed.
+/// and those fetched latest; the others are read from an unnamed file there, which is made when it is needed.
 /// Sequential or local access reads each block once.
 #pragma once
 
@@ -29,9 +29,10 @@
 namespace stickslip::base {
 
 /// Vector that may keep its elements in a file. Thread-bound, even if const; view() is for another thread.
-/// With a folder, growing and reading may throw std::system_error; the column can be moved but not copied,
-/// and its elements cannot be changed (contract). It must then be read as const, for example by
-/// std::as_const, since the non-const [] and iterators give references.
+/// With a folder, growing, truncating and reading may throw std::system_error; the column can be moved but
+/// not copied, and its elements cannot be changed (contract). It must then be read as const, for example by
+/// std::as_const, since the non-const [] and iterators give references. A column that was moved from can
+/// only be assigned to or destroyed.
 template <typename T>
 class LongColumn {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -79,7 +80,8 @@ class LongColumn {
     blocks_.back()[size_ % kBlock] = value;
     ++size_;
   }
-  /// Keeps the first `size` elements. \param size  at most size() (contract).
+  /// Keeps the first `size` elements. If it throws, the column can only be assigned to or destroyed.
+  /// \param size  at most size() (contract).
   void truncate(std::size_t size) {
     STICKSLIP_EXPECTS(size <= size_);
     const std::size_t blocks = (size + kBlock - 1) / kBlock;

@@ -43,8 +43,9 @@ enum class Dimension {
 };
 inline constexpr Dimension kLastDimension = Dimension::kTemperature;
 
-/// The whole text as one finite decimal number: no blanks, no plus sign, no hexadecimal, no inf or nan, no
-/// number outside the range of double. All else is an error of kind kUsage that names the text.
+/// The whole text as one decimal number, with or without an exponent: no blanks, no plus sign before it, no
+/// hexadecimal, no inf or nan, none too large or too small for a double (1e-400). All else is an error of
+/// kind kUsage that names the text.
 [[nodiscard]] Result<double> parse_number(std::string_view text);
 
 /// "number unit" in SI units; blanks between and around them are optional. A dimensionless quantity may stand
@@ -58,7 +59,7 @@ inline constexpr Dimension kLastDimension = Dimension::kTemperature;
 /// has some. A dimensionless number needs none.
 enum class BareNumber {
   kRefused,        ///< Refused, as in configuration files.
-  kOnlyZero,       ///< Refused but for 0, which is the same in all units.
+  kOnlyZero,       ///< Refused but for 0. Not for temperatures, whose units have different zeros.
   kSiWithWarning,  ///< Read in the SI unit, as version 0.1 did; EnteredQuantity::warning says so.
   kSi,             ///< Read in the SI unit, as the entry's help says.
 };

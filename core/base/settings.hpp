@@ -72,11 +72,13 @@ class Settings {
   /// \param path    dotted from the document's root, whichever table this is; no arrays.
   /// \param value  TOML; text that is not TOML is taken as a string.
   /// \param origin  stands for the place in messages, e.g. the option as typed.
-  /// Usage error: empty name in the path, a value on the path that is not a table, text that is not UTF-8.
+  /// Usage error: empty name in the path, a value on the path that is not a table, text that is not UTF-8, a
+  /// document that can no longer be written. Discard the document after an error.
   [[nodiscard]] Result<void> set(std::string_view path, std::string_view value, std::string_view origin);
   /// Removes a key or table. Call it before reading: a Settings of a removed table dangles.
   /// \param path,origin  as of set().
-  /// Usage error if it is absent; the message lists the keys present beside it.
+  /// Usage error if it is absent (the message lists the keys present beside it), or if the document can no
+  /// longer be written. Discard the document after an error.
   [[nodiscard]] Result<void> remove(std::string_view path, std::string_view origin);
 
   /// Path given to load(), or name given to parse().

@@ -13,14 +13,14 @@ inline constexpr std::size_t kLongestName = 200;
 
 [[nodiscard]] bool is_utf8(std::string_view text);
 
-/// Number of bytes of a colour code "ESC [ digits m", of at most two digits, at the beginning of the text; 0
-/// if there is none.
+/// Number of bytes of a colour code "ESC [ digits m", of no, one or two digits, at the beginning of the text;
+/// 0 if there is none.
 [[nodiscard]] std::size_t colour_size(std::string_view text);
 
 /// The text as one line of valid UTF-8. Shown by their numbers: control characters below 0x20 and bytes that
 /// are no UTF-8 (\x1b), other control characters (\u007f, \u009b), what changes the direction of text or
-/// breaks a line (\u202e, \u2028), and characters without width that are no part of words (\u200b, \ufeff,
-/// tags). Joiners stay, which words need.
+/// breaks a line (\u202e, \u2028), and characters without width (\u200b, \ufeff, tags). Joiners and variation
+/// selectors stay, which words and signs need, as do rare characters without width.
 /// All other text, in any language, stays as it is, including a backslash, so that the result cannot be
 /// converted back.
 /// \param colours_stay  true: colour codes stay; the caller has escaped those of untrusted text.

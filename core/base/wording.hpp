@@ -10,8 +10,8 @@
 
 namespace stickslip::base {
 
-/// The first `longest` bytes of the text, or up to 3 fewer so that no UTF-8 sequence is cut, as printable()
-/// shows them; with "…" behind if the text is longer.
+/// The first `longest` bytes of the text, or fewer so that no UTF-8 sequence is cut, as printable() shows
+/// them, which may be longer; with "…" behind if the text is longer.
 [[nodiscard]] std::string one_line(std::string_view text, std::size_t longest = 60);
 
 /// Message of an exception as one printable line; it may quote the content of a file.
@@ -21,7 +21,7 @@ namespace stickslip::base {
 [[nodiscard]] std::string system_message(int error);
 
 /// "did you mean sled_mass? Known here: …" with the known word nearest to `word` if one is within three edits
-/// (characters inserted, removed or replaced), else "known here: …". Both list all known words.
+/// (bytes inserted, removed or replaced), else "known here: …". Both list all known words.
 [[nodiscard]] std::string spelling_hint(std::string_view word,
                                         const std::set<std::string, std::less<>>& known);
 

@@ -1,6 +1,6 @@
 /// \file
 /// Interface of a board. Hardware, simulation and replay implement it and pass one conformance suite
-/// (tests/conformance); no caller distinguishes them.
+/// (tests/conformance); no caller need distinguish them.
 ///
 ///     base::Result<void> started = board.start();
 ///     daq::ScanBlock block;
@@ -89,7 +89,8 @@ class Board {
   /// Ends the acquisition; scans not read are lost. Allowed at any time, any number of times.
   virtual void stop() noexcept = 0;
 
-  /// Reason for the last failure of start() or read(), for the user; empty if neither failed.
+  /// Reason for the last failure of start() or read(), for the user; empty if neither failed since a start()
+  /// succeeded.
   [[nodiscard]] virtual std::string last_error() const { return {}; }
 };
 

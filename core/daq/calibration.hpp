@@ -18,7 +18,7 @@ struct LoadCell {
   double zero_V = 0.0;
 };
 
-/// Converts the raw readings of one board. Real-time safe after construction.
+/// Converts the raw readings of one board. Real-time safe after construction, but for copies.
 class Calibration {
  public:
   /// \param normal_load_N  sled mass × g.
@@ -32,7 +32,7 @@ class Calibration {
   /// Force over the normal load.
   [[nodiscard]] double coefficient(double raw) const noexcept;
 
-  /// Copy with another zero of the load cell, finite.
+  /// Copy with another zero of the load cell, finite (not checked). Allocates.
   [[nodiscard]] Calibration with_zero(double zero_V) const {
     Calibration other = *this;
     other.load_cell_.zero_V = zero_V;

@@ -61,6 +61,7 @@ class GapTracker {
   explicit GapTracker(std::optional<ScanIndex> next) noexcept : next_(next) {}
 
   /// Takes the next block.
+  /// \param block  not empty.
   /// \param cause  cause of the gap if the index jumps before this block. With kOverrun, kBoardMissing and
   ///        kSuspended the gap is estimated.
   /// \param halted  the board had halted in between; the gap is then estimated, whatever the cause.

@@ -28,15 +28,16 @@ struct LoadCellFit {
   std::optional<double> zero_standard_error_V;        ///< From three points on.
   std::optional<double> residual_V;  ///< Standard deviation about the line, from three points on.
   /// Mean residual of the points under a lower load than the point before, minus that of those under a higher
-  /// one; absent if there are none of either.
+  /// one; absent unless there are points of both kinds.
   std::optional<double> hysteresis_V;
   int used = 0;        ///< Number of points used.
   std::string reason;  ///< Set exactly when there is no load cell.
 };
 
 /// Least squares of the voltage on the force, without saturated points. The result has a reason instead of a
-/// load cell if a value is not finite, if there are fewer than two different loads, or if the voltage does
-/// not follow them: the slope is 0 or, from three points on, at most three of its standard errors.
+/// load cell if a value is not finite, also of a saturated point, if there are fewer than two different
+/// loads, or if the voltage does not follow them: the slope is 0 or, from three points on, at most three of
+/// its standard errors.
 [[nodiscard]] LoadCellFit fit_load_cell(std::span<const LoadPoint> points);
 
 }  // namespace stickslip::daq

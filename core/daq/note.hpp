@@ -22,7 +22,7 @@ struct Note {
     kStart,  ///< A command began the test at this scan.
     kStop,   ///< A command ended the test; this is its last scan.
     kMark,   ///< A remark.
-    kBench,  ///< The bench was armed or tared before the test; placed at the test's first scan.
+    kBench,  ///< The bench was armed, tared or calibrated before the test; placed at its first scan.
     kStall,  ///< The computer stalled; this scan was read late.
     kStep,   ///< The computer's date was set.
   };

@@ -10,8 +10,10 @@
 namespace stickslip::daq {
 
 struct Predecessor {
-  std::optional<Continuation> continuation;  ///< The index goes on from it; absent if there was no scan.
-  std::optional<BoardInfo> board;            ///< The board that acquired last; absent if none did.
+  /// The index goes on from it; absent as RateMeter::continuation(), also if scans came but none was read
+  /// promptly.
+  std::optional<Continuation> continuation;
+  std::optional<BoardInfo> board;  ///< The board that acquired last; absent if none did.
 };
 
 }  // namespace stickslip::daq

@@ -1,5 +1,5 @@
 /// \file
-/// The true scan rate from clock anchors: least squares of time against index.
+/// The true scan rate from clock anchors: least squares of monotonic time against index.
 ///
 ///     RateFit fit{granted_Hz};
 ///     for (const ClockAnchor& anchor : anchors) fit.add(anchor);
@@ -11,9 +11,9 @@
 ///
 /// A read can only be late, never early: after a stall of the computer the backlog is read in a burst. So if
 /// two anchors disagree, the one with the smaller delay is right. An anchor that is too late relative to the
-/// one before is ignored. One that is too early shows that those before it were late, or that the clock
-/// stopped (a suspended machine); it begins a segment. A segment of one anchor has no information about the
-/// rate, so a test that was read in one burst has no estimate.
+/// last one used is ignored, unless it is the kLastingDelay-th in a row. One that is too early shows that
+/// those before it were late, or that the clock stopped (a suspended machine); it begins a segment. A segment
+/// of one anchor has no information about the rate, so a test that was read in one burst has no estimate.
 #pragma once
 
 #include <cstdint>

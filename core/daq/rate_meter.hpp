@@ -31,7 +31,7 @@ class RateMeter {
   explicit RateMeter(double granted_Hz) noexcept
       : granted_Hz_(granted_Hz), picker_(granted_Hz), fit_(granted_Hz) {}
 
-  /// To be called with each block, in the order of their indices.
+  /// To be called with each block that is not empty, in the order of their indices.
   void observe(const ScanBlock& block) noexcept;
   /// To be called when a board was started whose first scan, one period after `now_ns`, has index `first`.
   /// The distance to earlier scans comes from the clock only.
@@ -39,7 +39,7 @@ class RateMeter {
   /// To be called when the index of the next block was derived from a clock.
   void restarted() noexcept;
 
-  /// Rate over all blocks up to the last anchor; nullopt with fewer than RateFit::kFewestAnchors anchors.
+  /// Rate over all blocks up to the last anchor; nullopt as RateFit::estimate().
   [[nodiscard]] std::optional<RateEstimate> estimate() const noexcept { return fit_.estimate(); }
   /// State after the last block. Nullopt after construction and after restarted(), until a block was read
   /// promptly or started() was called.

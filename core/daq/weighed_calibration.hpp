@@ -36,7 +36,7 @@ struct WeighedPoint {
   WeightReading reading;
   double force_N = 0.0;
   double residual_V = 0.0;  ///< Voltage less that of the line; NaN if there is no load cell.
-  std::string refused;      ///< Reason why it is refused; empty if accepted.
+  std::string refused;      ///< Why it is refused; empty if accepted, or if the first reading has a mass.
 };
 
 /// Result of weigh().
@@ -49,7 +49,7 @@ struct WeighedCalibration {
 };
 
 /// Largest accepted wander of a reading, relative to its difference from the tare; of a reading without
-/// weight, relative to the largest difference from the tare.
+/// weight, relative to the largest difference from the tare, or to the converter's span while there is none.
 inline constexpr double kLargestWander = 0.005;
 /// Smallest accepted difference of a weight from the tare, relative to the converter's span; below it, 1 % of
 /// the difference would be less than 1/10 000 of the span.
@@ -58,8 +58,9 @@ inline constexpr double kSmallestChange = 0.01;
 inline constexpr int kFewestWeights = 3;
 
 /// Judges each reading and fits the accepted ones. The first reading must be the tare; weights then grow, and
-/// fall again. The result has no load cell but a reason, fit.reason, if the first reading has a mass or is
-/// refused, if fewer than kFewestWeights count on the way up or down, or if fit_load_cell() finds none.
+/// fall again. The result has no load cell but a reason, fit.reason, if there is no reading, if the first has
+/// a mass or is refused, if fewer than kFewestWeights count on the way up or down, or if fit_load_cell()
+/// finds none.
 /// \param readings  masses at least 0 and finite (contract).
 /// \param span_V  of the converter's range; 0 if unknown: the largest difference from the tare replaces it.
 [[nodiscard]] WeighedCalibration weigh(std::span<const WeightReading> readings, double gravity_m_per_s2,

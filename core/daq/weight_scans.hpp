@@ -19,14 +19,15 @@ struct WeighingTimes {
   bool operator==(const WeighingTimes&) const = default;
 };
 
-/// Largest accepted mass of a weight, kg.
+/// Largest mass of a weight that `stickslip calibrate` and the daemon accept, kg. Not checked here.
 inline constexpr double kHeaviestWeight_kg = 1e4;
 
 /// Scans of one weight, for one reading.
 class WeightScans {
  public:
-  /// \param times  not negative (contract). At least daq::kReadingParts scans are recorded, however short
-  /// reading_s is.
+  /// \param board  gives counts or volts.
+  /// \param times  not negative (contract), finite. At least daq::kReadingParts scans are recorded, however
+  /// short reading_s is.
   WeightScans(const daq::BoardInfo& board, const WeighingTimes& times);
 
   /// Adds the next scan; it is skipped during the settling time. Once full(), further scans are not needed,

@@ -36,7 +36,7 @@ struct Budget {
   /// Smallest |log-likelihood ratio| of interest. A ratio that is certainly smaller is not computed, which
   /// saves most of the time; then only CaptureEvidence::known is set. 0: always compute.
   double decisive = 0.0;
-  /// Limit of the iterations of the captured trajectory's fit.
+  /// Limit of the iterations of each fit of the captured trajectory.
   int iterations = 8;
   /// Log-likelihood ratio that suffices for "captured". If the first guess of the captured trajectory exceeds
   /// it, the guess is not improved, and the ratio is a lower limit. Infinity: the guess is always improved.
@@ -60,7 +60,8 @@ struct CaptureEvidence {
   double log_likelihood_ratio = 0.0;
   /// Time of the capture in the captured trajectory, also where the free one is likelier.
   double capture_s = std::numeric_limits<double>::quiet_NaN();
-  /// Onset of the next slip in the captured trajectory; may be yet to come.
+  /// Onset of the next slip in the captured trajectory; may be yet to come; infinity if the belt never raises
+  /// c to S.
   double next_onset_s = std::numeric_limits<double>::quiet_NaN();
   double residual_sigmas = 0.0;  ///< Robust standard deviation of the better trajectory's residuals, in σ.
   bool known = false;            ///< There were enough points for an evaluation: eight rows (ScanRow).
@@ -71,8 +72,8 @@ struct CaptureEvidence {
 class CaptureTest {
  public:
   /// \param points  of a slip, from its force maximum on or from between onset and maximum; at most
-  ///        CycleBuffer::kMostPoints. Close above the threshold speed a free oscillation is often told only
-  ///        when they reach the minimum after the next maximum.
+  ///        CycleBuffer::kMostPoints. Requires what ScanWindow::lay_out() does. Close above the threshold
+  ///        speed a free oscillation is often told only when they reach the minimum after the next maximum.
   [[nodiscard]] CaptureEvidence evaluate(std::span<const estimate::CyclePoint> points,
                                          const CapturePrior& prior, const Budget& budget) noexcept;
 

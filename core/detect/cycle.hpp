@@ -10,13 +10,13 @@
 
 namespace stickslip::detect {
 
-/// Bits of Cycle::flags. "Inside" is from this peak to the next; in the last cycle to its trough, or, while
-/// the test runs, to the end of the test.
+/// Bits of Cycle::flags. "Inside" is from this peak to the next; in the last cycle to its trough. While the
+/// test runs, the last cycle reaches to the end of the test, and one whose ring-down died away to its trough.
 enum CycleFlag : std::uint8_t {
   kCycleHasSpike = 1U << 0U,     ///< A spike was replaced inside.
   kCycleHasGap = 1U << 1U,       ///< Scans are missing inside.
   kCycleIsSaturated = 1U << 2U,  ///< The converter was at a rail inside.
-  kCycleCaptured = 1U << 3U,     ///< The slip ended in sticking.
+  kCycleCaptured = 1U << 3U,     ///< The slip ended in sticking; not set if unknown.
   /// The first slip of the test, or (set at the end of the test) after a hold: not representative.
   kCycleIsFirst = 1U << 4U,
 };
@@ -27,11 +27,11 @@ struct Cycle {
   std::int64_t number = 0;         ///< From 0.
   base::ScanIndex first_scan = 0;  ///< Scan nearest to the peak, index of the acquisition.
   double onset_time_s = 0.0;       ///< Slip onset.
-  double capture_time_s = 0.0;     ///< Slip ends in sticking; NaN if it does not.
+  double capture_time_s = 0.0;     ///< Slip ends in sticking; NaN if not, or if unknown.
   double peak_time_s = 0.0;        ///< Maximum of the force, interpolated between scans.
-  double period_s = 0.0;           ///< Peak to next peak; NaN for the last cycle and before a break.
+  double period_s = 0.0;           ///< Peak to next peak; NaN if none; after the test also before a break.
   double stick_time_s = 0.0;       ///< From the capture before (or rest in a hold) to this onset.
-  double slip_time_s = 0.0;        ///< Onset to capture; NaN if not captured.
+  double slip_time_s = 0.0;        ///< Onset to capture; NaN if not captured, or if unknown.
   double peak = 0.0;               ///< Coefficient at the maximum, interpolated.
   double trough = 0.0;             ///< Coefficient at the following minimum, interpolated.
   double force_drop = 0.0;         ///< peak − trough, as a coefficient.

@@ -22,7 +22,7 @@ struct Fall {
   /// Scans from the last above 90 % to the first below 10 % of the drop. For a fall of more than
   /// signal::kMostSteps scans it may be too large by 0.2 % of the time from peak to trough.
   double duration = 0.0;
-  double rise_duration = 0.0;  ///< Scans from the minimum before to the peak; 0 if the trace begins there.
+  double rise_duration = 0.0;  ///< Scans from the minimum before to the peak; 0 if the trace begins at it.
   double rise_from = 0.0;      ///< Median of three at that turning point.
 
   double robust_drop = 0.0;  ///< Drop of the median of three, which noise hardly affects.
@@ -36,7 +36,7 @@ struct Fall {
 /// and does not depend on the trace; each scan costs amortised O(1). Move-only.
 class FallFinder {
  public:
-  /// \param value       despiked coefficient of the next scan.
+  /// \param value       despiked coefficient of the next scan; finite.
   /// \param hysteresis  > 0; the caller scales it to the noise and may change it from scan to scan. Infinite:
   ///        no turning point is confirmed.
   /// \return the fall that this scan confirms, else nullopt: the force has risen from the trough by more than

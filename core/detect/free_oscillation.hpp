@@ -52,7 +52,7 @@ class FreeEquations {
     matrix << n00_, n01_, n02_, n01_, n11_, n12_, n02_, n12_, n22_;
     return matrix;
   }
-  /// Negative gradient of the cost.
+  /// Negative gradient of the cost; without weights, of half the sum of squares.
   [[nodiscard]] Eigen::Vector3d gradient() const noexcept { return {g0_, g1_, g2_}; }
 
   double cost = 0.0;
@@ -70,8 +70,9 @@ class FreeEquations {
   double g2_ = 0.0;
 };
 
-/// Fits a free oscillation with Huber's weights (kChoiceLimit), in at most three reweightings.
-/// \param p  first guess; becomes the parameters of least cost; unchanged if the rows do not determine them.
+/// Fits a free oscillation with Huber's weights (kChoiceLimit), in at most three steps, the first unweighted.
+/// \param rows  at least three that are no strays.
+/// \param p  first guess; becomes the parameters of nearly the least cost.
 /// \return Huber's cost at p.
 double fit_free(std::span<const ScanRow> rows, FreeOscillation& p) noexcept;
 

@@ -90,8 +90,8 @@ struct LiveState {
   /// By the slip decided last: stick-slip, or ring-down, which becomes steady sliding when it has died away.
   /// Undecided until a slip is decided.
   model::Regime regime = model::Regime::kUndecided;
-  /// Onset (the peak if unknown) of the first slip that was not captured, on the time axis of Cycle; NaN
-  /// unless the regime is ring-down.
+  /// Onset (the peak if unknown) of the slip that began the ring-down, the first not captured since the last
+  /// capture; on the time axis of Cycle. NaN unless the regime is ring-down.
   double ring_down_since_s = std::numeric_limits<double>::quiet_NaN();
   std::int64_t slip_count = 0;      ///< Slips confirmed so far, with the one under way.
   std::optional<LiveCycle> latest;  ///< The cycle closed last.

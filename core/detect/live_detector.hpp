@@ -5,9 +5,8 @@
 ///     for (…) if (const auto cycle = detector.add(coefficient, saturated)) use(*cycle);
 ///     if (const auto last = detector.end()) use(*last);
 ///
-/// Results depend on the scans only, not on their division into blocks. O(1) for a scan. The fits of a
-/// closing cycle have bounded size and are distributed over scans. Allocates only in the
-/// constructor.
+/// Results depend on scans, gaps and settings, not on the division into blocks. O(1) for a scan. The fits of
+/// a closing cycle have bounded size and are distributed over scans. Allocates only in the constructor.
 ///
 /// A fall is reported kFallDelayScans after the scan at which the median of three scans has fallen below its
 /// maximum by the hysteresis. If the highest scan is isolated, the median's maximum is lower, and the scans
@@ -50,12 +49,12 @@ class LiveDetector {
 
   explicit LiveDetector(const LiveSettings& settings);
 
-  /// The next scan.
+  /// The next scan; the coefficient must be finite.
   /// \return the cycle that it closes, else nullopt. A cycle closes when the next slip is confirmed, at the
   /// rise after that slip's trough, or when its ring-down has died away. Cycle::first_scan counts from the
   /// first scan added, with missing scans.
   std::optional<LiveCycle> add(double coefficient, bool saturated);
-  /// `count` scans are missing before the next one.
+  /// `count` > 0 scans are missing before the next one. Before the first scan this shifts all times.
   void gap(std::int64_t count) noexcept;
   /// The test is over. The scans that the despiker still holds back are not used.
   /// \return the last cycle, if one is open; else nullopt.

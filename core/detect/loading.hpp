@@ -14,6 +14,7 @@ namespace stickslip::detect {
 /// SlipRule::kSignificantSigmas.
 class Loading {
  public:
+  /// The next scan; not to be called after it returned true, which could move the begin.
   /// \param sigma  noise of one scan; infinite while unknown.
   /// \param count  scans so far, with this one.
   /// \return whether the loading is seen at this scan.

@@ -24,7 +24,8 @@ struct RegimeVerdict {
   std::optional<std::size_t> captured;
 };
 
-/// Likelihood ratio of the best two regimes below which the result is undecided.
+/// Likelihood ratio of the best two regimes below which the result is undecided. Also how much likelier
+/// than a capture a free oscillation must be where SlipFollower has to decide.
 inline constexpr double kDecisiveLikelihoodRatio = 20.0;
 
 /// How well the model describes a test.
@@ -41,7 +42,8 @@ enum class Description {
 /// In a mixed course each change of behaviour costs ln(n − 1), n being the slips that tell: it may be between
 /// any two of them. If the model is refuted it costs ln 100 at least.
 /// \param slip_count  slips of the test.
-/// \param log_likelihood_ratios  captured over free, one for each slip but the last; 0 if it does not tell.
+/// \param log_likelihood_ratios  captured over free, one for each slip but the last; not NaN: 0 if it does
+///        not tell.
 /// \param description  of the trace by the model on which the ratios rest. If refuted, each ratio counts for
 ///        20 to 1 at most. If doubtful, slips that end differently leave the regime undecided.
 [[nodiscard]] RegimeVerdict judge_regime(std::size_t slip_count,

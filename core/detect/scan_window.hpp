@@ -44,8 +44,9 @@ struct ScanRow {
 class ScanWindow {
  public:
   /// Makes the rows of these points. Rows that are unchanged keep their outlier marks.
-  /// \param points  of one slip, not empty, at most CycleBuffer::kMostPoints.
-  /// \param sigma  noise of one scan.
+  /// \param points  of one slip, not empty, at most CycleBuffer::kMostPoints. From call to call with the same
+  ///        first time, points may only be added at the end and merged: other values are not noticed.
+  /// \param sigma  noise of one scan, > 0.
   /// \return number of leading rows that are unchanged since the last call; 0 after a change of ω, γ, sigma
   /// or the first point.
   std::size_t lay_out(std::span<const estimate::CyclePoint> points, const model::SharedParameters& shared,
@@ -57,10 +58,10 @@ class ScanWindow {
   [[nodiscard]] double sigma() const noexcept { return sigma_; }
 
   /// Marks the row of [from, to) with the largest residual as an outlier, if it exceeds
-  /// estimate::kStraySigmas. Refused if more than three rows, or one in five, would be marked, or three or
-  /// fewer of [from, to) would be left. Refused too if more than one row in five exceeds it: then neither
-  /// trajectory describes them, and to leave some out would not help.
-  /// \param sigmas_off  residual of a row about the better trajectory, in standard deviations.
+  /// estimate::kStraySigmas. Refused if more than three of all rows would be marked, or three or fewer of
+  /// [from, to) would be left. Refused too if the rows that exceed it and those already marked are more than
+  /// one in five of all: then neither trajectory describes them, and to leave some out would not help.
+  /// \param sigmas_off  residual of a row about the better trajectory, in standard deviations; 0 for a stray.
   /// \return whether a row was marked.
   template <typename SigmasOff>
   bool leave_out_a_stray(std::size_t from, std::size_t to, SigmasOff sigmas_off) noexcept {

@@ -56,7 +56,7 @@ class SlipFollower {
   [[nodiscard]] const LiveCycle& slip() const noexcept { return slip_; }
   /// Mutable, so that the caller can set values that it knows better.
   [[nodiscard]] LiveCycle& slip() noexcept { return slip_; }
-  /// Present estimates of ω, γ and r.
+  /// Present estimates of ω, γ and r; not before the first open().
   [[nodiscard]] const model::SharedParameters& shared() const noexcept { return now_.shared; }
 
  private:

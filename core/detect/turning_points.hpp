@@ -33,6 +33,7 @@ struct TurningPoint {
 
 /// K from a maximum and the minimum half an oscillation later, whose distance from K is smaller by the factor
 /// e^(−πγ/2ω).
+/// \param oscillator  must oscillate.
 [[nodiscard]] double K_of_turning_points(double peak, double trough,
                                          const model::Oscillator& oscillator) noexcept;
 
@@ -43,7 +44,8 @@ struct SlipOfPeak {
   double slip_speed_ratio = 0.0;  ///< Largest slip speed over drive speed [18].
 };
 /// Finds the slip whose force peaks at this height: solves the closed form of the peak, [2] with damping
-/// [17], for S − K. \param peak_above_K  peak less K, > 0. \param stick_rate_per_s  r > 0.
+/// [17], for S − K.
+/// \param peak_above_K  peak less K, > 0. \param stick_rate_per_s  r > 0. \param oscillator  must oscillate.
 [[nodiscard]] SlipOfPeak slip_of_peak(double peak_above_K, double stick_rate_per_s,
                                       const model::Oscillator& oscillator) noexcept;
 

@@ -43,6 +43,7 @@ class CycleBuffer {
   void keep_fine(double from_s, double to_s, double longest_s) noexcept;
   /// Removes the points that end before time_s.
   void forget_before(double time_s) noexcept;
+  /// Removes all points. The limit of keep_fine() stays.
   void clear() noexcept { size_ = 0; }
 
   [[nodiscard]] std::span<const CyclePoint> points() const noexcept { return {points_.data(), size_}; }

@@ -41,7 +41,8 @@ struct CycleFit {
 /// \param start   first guess of onset, S and K.
 /// \param shared  first guess of ω, γ and r.
 /// \param sigma   noise of one scan, > 0.
-/// \return converged = false with fewer than four points, or if the fit does not converge.
+/// \return converged = false with fewer than four points, if the first guess is not admissible (as in
+/// fit_slips()), or if the fit does not settle in 12 iterations.
 [[nodiscard]] CycleFit fit_cycle(std::span<const CyclePoint> points, bool captured,
                                  const model::SlipParameters& start, const model::SharedParameters& shared,
                                  const SharedPosterior& knowledge, double sigma) noexcept;

@@ -61,7 +61,7 @@ class HuberSums {
 
   /// Scale of the cost, Σψ²/(n − p)/mean ψ′: twice a difference of costs divided by it is distributed as χ²,
   /// like twice a log-likelihood ratio of Gaussian noise [Hampel et al., Robust Statistics, 1986, section
-  /// 7.2]; 0 without freedom.
+  /// 7.2]; 0 if there are no more residuals than parameters.
   [[nodiscard]] double cost_scale(double parameters) const noexcept {
     const double left = count_ - parameters;
     return left > 0.0 ? psi_square_sum_ / left / inlier_part() : 0.0;

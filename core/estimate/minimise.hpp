@@ -32,7 +32,7 @@ struct MinimiserLimits {
 ///     solved.
 /// \param state,equations  first guess and its equations; become those of the least cost found.
 /// \return whether it converged. It does not if the cost of the first guess is not finite, the iterations run
-/// out, or no step, however damped, lowers the cost.
+/// out, or every step, however damped, raises the cost or cannot be solved for.
 template <typename Problem>
 bool minimise(const Problem& problem, typename Problem::State& state, typename Problem::Equations& equations,
               const MinimiserLimits& limits) {

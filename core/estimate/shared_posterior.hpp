@@ -31,8 +31,8 @@ class SharedPosterior {
   void start(double omega, double stick_rate_per_s);
   /// Adds the information of one cycle and fades that of earlier ones. Ignores evidence that is not finite.
   void learn(const SharedEvidence& evidence);
-  /// Restarts the estimate of r after a change of the belt's speed. Keeps the prior and what was learnt of ω
-  /// and γ.
+  /// Restarts the estimate of r after a change of the belt's speed. Keeps what was learnt of ω and γ, and the
+  /// prior: one of the pull speed still holds r near the former speed.
   /// \param stick_rate_per_s  new first estimate, > 0.
   void forget_stick_rate(double stick_rate_per_s);
 

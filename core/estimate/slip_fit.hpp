@@ -48,8 +48,8 @@ struct SlipFit {
   double freedom = 0.0;         ///< Degrees of freedom: usable scans less parameters.
 
   // The windows are those that fit_slips() filled.
-  /// Covariance of the mean of (onset, S, K) over `windows`, from noise alone: without the scatter from slip
-  /// to slip.
+  /// Covariance of the mean of (onset, S, K) over `windows`, not empty, from noise alone: without the scatter
+  /// from slip to slip.
   [[nodiscard]] Eigen::Matrix3d mean_covariance(const std::vector<SlipWindow>& windows) const;
   /// Covariance of one slip's (onset, S, K), including the uncertainty of ω, γ and r.
   [[nodiscard]] Eigen::Matrix3d covariance(const SlipWindow& window) const;

@@ -16,13 +16,15 @@ namespace stickslip::estimate {
 inline constexpr double kScatterLevel = 0.01;
 
 /// Fits periodic stick-slip to all slips but the first, which is often not representative [Penner 1995], and
-/// compares it with the fit slip by slip of the same scans. The comparison is an F test on the robust costs,
-/// 3n + 3 parameters for n slips against 6 [Hampel et al., Robust Statistics, 1986, section 7.2].
+/// compares it with the fit slip by slip, by an F test on the robust costs, 3n + 3 parameters for n slips
+/// against 6 [Hampel et al., Robust Statistics, 1986, section 7.2].
+/// \param trace  of a belt of constant speed.
 /// \param windows,shared  fitted by fit_slips() to the whole test.
 /// \param sigma  noise of one scan, > 0.
 /// \param first_counts  the first slip is fitted too.
-/// \return the fit of one S and one K; nullopt if a slip did not end in sticking, there are fewer than three
-/// windows, either fit does not converge, or the slips differ significantly.
+/// \return the fit of one S and one K; nullopt if a window is not SlipWindow::captured, there are fewer than
+/// three windows, no periodic stick-slip has the slips' means, either fit does not converge, or the slips
+/// differ significantly.
 [[nodiscard]] std::optional<UniformFit> uniform_if_slips_agree(const Trace& trace,
                                                                const std::vector<SlipWindow>& windows,
                                                                const model::SharedParameters& shared,

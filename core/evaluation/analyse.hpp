@@ -1,6 +1,6 @@
 /// \file
 /// Analysis of a record's scans. It is that of the live test, so that results are the same to the last bit,
-/// unless the record lacks scans that the live analysis saw (daq::GapCause::kStorageFull).
+/// unless the record lacks scans that the live analysis saw (daq::GapCause::kStorageFull, kDamaged).
 #pragma once
 
 #include <filesystem>
@@ -36,6 +36,7 @@ class RecordAnalysis {
   // Both may throw std::system_error where there is a scratch folder.
 
   /// Consecutive scans from `first` on, after all before; a jump is a gap.
+  /// \param raw  finite.
   /// \param second  codes of the second channel, as record::Record::second: as many, or none if there is no
   ///        such channel.
   void add(daq::ScanIndex first, std::span<const double> raw, std::span<const std::int32_t> second = {});
@@ -66,8 +67,8 @@ class RecordAnalysis {
   std::optional<daq::ScanIndex> next_;
 };
 
-/// Results, cycles and spikes of the record's scans; status, cause and truth stay those of the
-/// record's end, if it has one. Errors as RecordAnalysis::make().
+/// Results, cycles and spikes of the record's scans. All else is that of the record's end; without one, the
+/// default, also the status: complete. Errors as RecordAnalysis::make().
 /// \param scratch_folder  as RecordAnalysis::make(); with one std::system_error may be thrown.
 [[nodiscard]] base::Result<record::EndRecord> analyse(const record::Record& record,
                                                       const std::filesystem::path& scratch_folder = {});

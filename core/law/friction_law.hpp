@@ -23,7 +23,7 @@
 /// of their stick times. A slip after a hold counts with its own stick time, which the belt set.
 ///
 ///     const FrictionLaw found = find_law(tests);
-///     found.told ? name(found.law) : "cannot be told";
+///     found.told ? name(found) : "cannot be told";
 #pragma once
 
 #include <array>
@@ -53,7 +53,8 @@ struct LawTest {
   std::optional<double> stick_time_s;  ///< Of its slips, geometric mean; > 0; with S.
   std::optional<Value> S;
   std::optional<Value> K;
-  bool held = false;      ///< The belt stood still for the stick time, whatever its speed.
+  /// The belt stood still for the stick time, whatever its speed. Such a test has S and no K.
+  bool held = false;
   std::size_t sheet = 0;  ///< Number of the sheet, which all its tests share.
 };
 

@@ -51,7 +51,8 @@ struct Line {
   [[nodiscard]] double log_density(const Point& point) const;
 };
 
-/// Quantile of Student's t that leaves this probability outside on both sides together. \param freedom > 0.
+/// Quantile of Student's t that leaves this probability outside on both sides together.
+/// \param freedom  > 0. \param outside  > 0, < 1.
 [[nodiscard]] double two_sided_t(double freedom, double outside);
 
 /// Factor that makes a standard error half of the half width of the 95 % interval. \param freedom > 0.
@@ -67,7 +68,7 @@ struct Leftover {
 /// they are less without it [Paule and Mandel, J. Res. NBS 87:377–385, 1982; DerSimonian and Kacker, Contemp.
 /// Clin. Trials 28:105–114, 2007].
 /// \param fit  gives the residuals of the fit with a τ².
-/// \param freedom  degrees of freedom.
+/// \param freedom  degrees of freedom, > 0.
 [[nodiscard]] double between_variance_of(const std::function<Leftover(double)>& fit, double freedom);
 
 /// Weighted least squares with weights 1/(error² + τ²), τ² by between_variance_of(); errors of the parameters

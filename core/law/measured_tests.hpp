@@ -34,7 +34,7 @@ struct LawTests {
 ///   A test of several speeds without such rests, as a ramp, counts for nothing.
 /// - Any other test counts for nothing without a known pull speed.
 /// - S needs a stick time: slips after the first that begin from a stick.
-/// - K of a test that slides steadily is its kinetic coefficient.
+/// - K of a test that slides steadily is its kinetic coefficient where it has no other K.
 /// - By turning points, the systematic part is a correction of its own in each test: it joins the error. In
 ///   tests by rests it stays systematic.
 /// - A value without an error has the largest of the others', or 1e-6 if none has one.

@@ -31,12 +31,13 @@ inline constexpr double kLongestHold_s = 100.0;
 /// A third of the slowest speed of the tests to three times the fastest. \param tests  at least one.
 [[nodiscard]] SpeedRange usual_range(std::span<const LawTest> tests);
 
-/// The pull that would tell most about S if S cannot be told, else about K if that cannot. What the
-/// systematic part alone keeps from being told is not asked about. A hold of kLongestHold_s is asked for only
-/// where tests have holds.
+/// The pull that would tell most about S if S cannot be told; about K if that cannot, and S is told or no
+/// pull would tell it. Not asked about: a coefficient that no test has, and what the systematic part alone
+/// keeps from being told. A hold of kLongestHold_s is asked for only where tests have holds, at the speed of
+/// the first of these, whatever the range.
 /// \param found  of these tests.
 /// \param highest_sticking_m_per_s  above it the sled does not stick again, so that S says nothing; pulls
-/// about S are at most 0.8 of it. Absent: unknown, no limit.
+/// about S without a hold are at most 0.8 of it. Absent: unknown, no limit.
 /// \return nullopt if there is nothing to ask about or no pull in the range would tell it, and where the
 /// tests show a direct effect of rate-and-state friction (!RateAndState::may_have_none).
 [[nodiscard]] std::optional<NextPull> next_pull(const FrictionLaw& found, std::span<const LawTest> tests,

@@ -9,9 +9,9 @@
 ///
 ///     S = const + a ln v + b ln t,    S − K(V) = b ln(V t/D_c) − a ln(V/v),    K = const − (b − a) ln V
 ///
-/// Between pulls t is as 1/v, so that they tell b − a alone; holds at one speed tell b. This holds for a sled
-/// far softer than critical, and pulls so slow that the time of a slip does not matter: docs/friction-laws.md
-/// has what simulated tests find.
+/// Between pulls t is as 1/v, so that they tell b − a alone; holds at one speed tell b. This holds for a
+/// stiffness far below the critical one of the law, and pulls so slow that the time of a slip does not
+/// matter: docs/friction-laws.md has what simulated tests find.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +29,7 @@ struct LawTest;
 struct RateAndState {
   Parameter a;                   ///< Direct effect; of natural logarithms.
   Parameter b;                   ///< Ageing; of natural logarithms.
-  double critical_slip_m = 0.0;  ///< D_c at a and b as found.
+  double critical_slip_m = 0.0;  ///< D_c at a and b as found; may be infinite or NaN unless `is_told`.
   /// D_c lies between critical_slip_m over and times this factor, by what the closed form leaves open
   /// (kCriticalSlipFactor) and the 95 % intervals of b and b − a.
   double within_factor = 0.0;
@@ -58,8 +58,8 @@ inline constexpr double kDirectEffectPart = 0.3;
 /// five times the duration of a slip are left out.
 ///
 /// \param points  S over log₁₀ of the stick time in s. \param of_tests  index of the test of each point.
-/// \return nullopt without a sheet with holds, without three slow pulls at two speeds, or without a degree of
-/// freedom for b.
+/// \return nullopt without a sheet with holds, without three slow pulls of other sheets at two speeds, or
+/// without a degree of freedom for b.
 [[nodiscard]] std::optional<RateAndState> rate_and_state(std::span<const LawTest> tests,
                                                          std::span<const Point> points,
                                                          std::span<const std::size_t> of_tests);

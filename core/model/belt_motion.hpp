@@ -26,6 +26,7 @@ class BeltMotion {
   /// \param start_s  time of the trace at which the belt started.
   BeltMotion(PullSpeed plan, double start_s);
 
+  /// Has no plan. A plan of one speed is not constant: the belt rests before it.
   [[nodiscard]] bool is_constant() const noexcept { return !plan_; }
   /// Whether the belt only pulls at one speed, rests, starts and stops, and its starts and stops take at most
   /// a tenth of the time at that speed before the last point of plan(). True if is_constant().
@@ -72,6 +73,7 @@ class BeltMotion {
 
   /// Index of the latest pull of the plan that has begun; 0 before the first, and if is_constant().
   [[nodiscard]] std::size_t pull_of(double time_s) const noexcept;
+  // In the following, a pull is an index into plan().pulls(), as from pull_of().
   /// End of a pull on the trace's time axis; infinity if it never stops, and if is_constant().
   [[nodiscard]] double pull_end_s(std::size_t pull) const noexcept;
   /// Start of a pull on the trace's time axis; −infinity for pull 0.

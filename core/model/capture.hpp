@@ -10,8 +10,8 @@
 namespace stickslip::model {
 
 /// Capture time: the first time after the fastest slip at which c′ reaches the rate of the belt. It is the
-/// root in [t₂, t₃], where c′ rises monotonically. It exists exactly when c′(t₃) ≥ belt rate; this closed
-/// form decides, not the root search.
+/// root in [t₂, t₃], where c′ rises monotonically; t₂ if c′ is at or above the belt's rate there already. It
+/// exists exactly when c′(t₃) ≥ belt rate; this closed form decides, not the root search.
 /// \param slip  must oscillate.
 /// \param belt_rate_per_s  ω₀² v/g; any sign.
 /// \return seconds after the onset; nullopt if the sled is not captured.

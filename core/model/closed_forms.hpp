@@ -28,7 +28,8 @@ namespace stickslip::model {
 /// [4]: ω t_slip without damping = 2π − 2 atan(1/Q), rad. \param Q > 0.
 [[nodiscard]] double undamped_slip_phase_rad(double Q) noexcept;
 
-/// [17]: half the range of the oscillation over S − K; √(1 + Q²) without damping. \param Q ≥ 0, finite.
+/// [17]: half the range of c in one slip, from peak to trough, over S − K; √(1 + Q²) without damping.
+/// \param Q ≥ 0, finite.
 [[nodiscard]] double amplitude_ratio(double Q, double gamma_over_2omega) noexcept;
 /// [18]: largest slip speed over drive speed, which is −c′(t₂)/r; infinity for Q = 0. \param Q ≥ 0.
 [[nodiscard]] double slip_speed_ratio(double Q, double gamma_over_2omega) noexcept;

@@ -13,7 +13,7 @@ namespace stickslip::model {
 
 /// C(ω², t) = cos ωt, cosh κt for ω² = −κ² < 0.
 /// \param omega_squared  rad²/s², any sign, finite.
-/// \param t_s            finite; for ω² < 0 the result overflows to infinity past |ωt| ≈ 710.
+/// \param t_s            finite; for ω² < 0 the result overflows to infinity past |κt| ≈ 710.
 [[nodiscard]] double entire_cosine(double omega_squared, double t_s) noexcept;
 
 /// Sn(ω², t) = sin(ωt)/ω in seconds, sinh(κt)/κ for ω² = −κ² < 0, t for ω² = 0. Domain as entire_cosine().
@@ -21,7 +21,7 @@ namespace stickslip::model {
 
 /// Oscillator of sled and coupling; its parameters belong to the tester, not to the paper.
 struct Oscillator {
-  double gamma_per_s = 0.0;  ///< γ ≥ 0
+  double gamma_per_s = 0.0;  ///< γ ≥ 0; a fit may reach below 0.
   double omega_squared = 0.0;  ///< ω² = ω₀² − γ²/4 [7], rad²/s²; ≤ 0 if the motion does not oscillate.
 
   /// From the frequency and decay of a free oscillation.

@@ -1,6 +1,6 @@
 /// \file
 /// Regime of a pull: stick-slip, ring-down, mixed, inertial oscillation, steady sliding, undecided.
-/// Definitions: docs/glossary.md.
+/// Slips whose end is not told do not count. Definitions: docs/glossary.md.
 #pragma once
 
 #include <array>

@@ -15,8 +15,8 @@ namespace stickslip::model {
 
 /// Parameters common to all slips of a test.
 struct SharedParameters {
-  double omega = 0.0;  ///< rad/s, damped.
-  double gamma = 0.0;  ///< 1/s
+  double omega = 0.0;  ///< rad/s, damped, > 0.
+  double gamma = 0.0;  ///< 1/s; a fit may reach below 0.
   double r = 0.0;      ///< Stick rate, 1/s; on a changing belt at its largest speed (BeltMotion).
 
   [[nodiscard]] Oscillator oscillator() const noexcept {
@@ -50,7 +50,7 @@ enum class SlipPhase { kBefore, kSlip, kAfter };  ///< Stick, slip, stick again.
 struct SlipPlace {
   SlipPhase phase = SlipPhase::kBefore;
   double value = 0.0;
-  double way_s = 0.0;           ///< In a stick: BeltMotion::way_s() since the onset (≤ 0) or the capture.
+  double way_s = 0.0;           ///< In a stick: BeltMotion::way_s() from the onset (kBefore) or the capture.
   double tau_s = 0.0;           ///< In the slip: time since the onset.
   DampedBasis basis{1.0, 0.0};  ///< In the slip: the basis at tau_s.
 };
@@ -58,6 +58,7 @@ struct SlipPlace {
 /// One slip with fixed parameters, ready to be evaluated at many times.
 class SlipModel {
  public:
+  /// \param shared  ω > 0.
   /// \param captured  if true, the sled sticks again where c′ reaches the belt's rate, or at
   ///        deciding_time_s() if it does not; if false, the oscillation never ends.
   /// \param belt  must outlive this object.
@@ -81,7 +82,7 @@ class SlipModel {
     return -shared_.gamma * waveform_.rate(at.basis) -
            waveform_.oscillator.omega0_squared() * (at.value - slip_.K);
   }
-  /// ∂/∂(onset, S, K, ω, γ, r) of the slip is this matrix times slip_terms().
+  /// ∂/∂(onset, S, K, ω, γ, r) at a place in the slip: this matrix times slip_terms() of it.
   using SlipCoefficients = Eigen::Matrix<double, 6, 5>;
   [[nodiscard]] const SlipCoefficients& slip_coefficients() const noexcept { return by_slip_terms_; }
   [[nodiscard]] static Eigen::Matrix<double, 5, 1> slip_terms(const SlipPlace& at) noexcept {
@@ -93,7 +94,8 @@ class SlipModel {
     return phase == SlipPhase::kBefore ? before_ : after_;
   }
   [[nodiscard]] const SlipWaveform& waveform() const noexcept { return waveform_; }
-  /// Seconds from onset to sticking; infinity if not captured.
+  /// Seconds from onset to sticking; infinity if made with captured = false. Finite is no proof of a capture:
+  /// see the constructor.
   [[nodiscard]] double capture_s() const noexcept { return capture_s_; }
 
  private:

@@ -20,7 +20,8 @@ struct Tester {
   double gravity_m_per_s2 = kStandardGravity_m_per_s2;
   std::optional<double> pull_speed_m_per_s;  ///< Nominal; nullopt if unknown.
   std::optional<double> stiffness_N_per_m;   ///< Of the coupling; nullopt if unknown.
-  /// Pull speed over time, planned or measured by a speed channel; nullopt: constant.
+  /// Pull speed over time, as planned; nullopt: that of the method, else constant. What a speed channel
+  /// measures counts before it.
   std::optional<PullSpeed> speed_course;
 
   [[nodiscard]] double normal_load_N() const noexcept { return sled_mass_kg * gravity_m_per_s2; }

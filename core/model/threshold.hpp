@@ -2,7 +2,7 @@
 /// Threshold speed: above it the sled does not stick again and the oscillation decays. [Penner 1995, (22)]
 ///
 ///     const double Q_th = Q_threshold(0.022);                     // 1.93871744784
-///     const double v_th = threshold_speed_m_per_s(tester, 0.05, kStandardGravity_m_per_s2);
+///     const double v_th = threshold_speed_m_per_s(oscillator, 0.05, kStandardGravity_m_per_s2);
 ///
 /// With x = θ − φ: tan φ · (x − φ + 3π/2) = ln(cos φ/sin x). The difference of both sides is monotone and
 /// changes its sign once, between bounds known in advance. Algorithm 748 [Alefeld, Potra and Shi, ACM TOMS
@@ -28,7 +28,8 @@ inline constexpr double kLargestGammaOver2Omega = 100.0;
 /// \param oscillator  underdamped.
 /// \param delta_mu  S − K ≥ 0.
 /// \param gravity_m_per_s2 > 0.
-/// \return infinity without damping, but NaN if S − K is 0, too; NaN if γ/2ω > kLargestGammaOver2Omega.
+/// \return infinity without damping, but NaN if S − K is 0, too; NaN if γ/2ω is outside the domain of
+/// Q_threshold().
 [[nodiscard]] double threshold_speed_m_per_s(const Oscillator& oscillator, double delta_mu,
                                              double gravity_m_per_s2) noexcept;
 

@@ -49,7 +49,7 @@ class UniformTrajectory {
   /// \return nullopt unless onset and ω are finite, ω > 0, |γ| < 2ω, S > K, r > 0, and the sled is captured.
   [[nodiscard]] static std::optional<UniformTrajectory> make(const UniformParameters& parameters);
 
-  /// Coefficient at any time; before the first onset the sled sticks.
+  /// Coefficient at any time. Before the first onset a stick without a beginning: c goes below 0.
   [[nodiscard]] UniformPoint at(double time_s) const noexcept;
 
   /// The first cycle, which all repeat.

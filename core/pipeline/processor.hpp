@@ -43,7 +43,7 @@ struct ProcessorSettings {
   SegmenterSettings segmenter;
   analysis::AnalysisSettings analysis;
   std::int64_t first_test_number = 1;
-  bool automatic = true;  ///< The bench arms itself: the force begins each test.
+  bool automatic = true;  ///< The bench arms itself after each test, and when scans arrive.
   /// One past the last scan of the acquisition before this one: the first block may then follow a gap.
   /// Nullopt for the first acquisition.
   std::optional<daq::ScanIndex> continues_at;
@@ -76,11 +76,12 @@ class Processor {
   // Commands, in processor_commands.cpp; between two blocks. One that is refused changes nothing; its report
   // says why. `who` is the name of the user.
 
-  /// Arms the bench: the next rise of the force begins a test.
+  /// Arms the bench: force above the trigger begins a test, also if it is there already.
   [[nodiscard]] CommandReport arm(const std::string& who);
   /// Begins a test with the next scan.
   [[nodiscard]] CommandReport start(const std::string& who);
-  /// Ends the running test with the latest scan; without a test, disarms the armed bench.
+  /// Ends the running test with the latest scan, or cancels a start() before its first scan; without either,
+  /// disarms the armed bench.
   [[nodiscard]] CommandReport stop(const std::string& who);
   /// Adds a remark at the latest scan of the running test; refused without one.
   [[nodiscard]] CommandReport mark(const std::string& text);

@@ -40,13 +40,14 @@ struct SegmenterSettings {
   /// Time below the end threshold that ends a test; must exceed the slack part of a cycle.
   double unload_dwell_s = 0.25;
   double no_motion_dwell_s = 0.5;  ///< Time of flat force that ends a test; four periods if they are longer.
-  double pre_trigger_s = 0.25;     ///< Part of the record before the trigger scan.
+  double pre_trigger_s = 0.25;     ///< Longest part of the record before the trigger scan.
 
-  /// Unloaded level at the first scan, if a record gives it; holds until the first test begins. Ignored
+  /// Unloaded level at the first scan, if a record gives it; holds through the first test. Ignored
   /// beyond UnloadedLevel::kFarthest.
   std::optional<double> unloaded_level = {};
 
-  /// Number of scans before the trigger scan that belong to the record.
+  /// Largest number of scans before the trigger scan that belong to the record. After a gap, a test, arm() or
+  /// tared(), and at the beginning, there may be fewer.
   [[nodiscard]] std::size_t pre_trigger_scans() const noexcept;
 };
 
@@ -62,8 +63,8 @@ class Segmenter {
     kNoRelativeMotion,  ///< Last scan of a test: the belt has stopped.
     kPulledAgain,       ///< Rose again before unloading was detected; begins no test. Once a test.
     /// As far below the unloaded level as a test begins above it, for the unload dwell: the force has the
-    /// wrong sign. Once for each such stretch, but for the first after a test: there the carriage may push
-    /// the sled back.
+    /// wrong sign. Only where force may begin a test; once for each such stretch, but for the first after a
+    /// test: there the carriage may push the sled back.
     kNegative,
   };
 

@@ -21,8 +21,8 @@ namespace stickslip::pipeline {
 /// Checks unloaded scans: fits a straight line with sine and cosine of 50 and of 60 Hz to the forces, spikes
 /// replaced, by least squares. Depends on its arguments only: a record gives the same bits again.
 /// \param raw  consecutive scans from `first` on. With fewer than kFewestIdleScans, or less than
-///        kShortestIdle_s, only the saturated scans are counted. Hum is absent, too, if the scan rate cannot
-///        resolve 60 Hz (analysis::kLowestRateForHum_Hz).
+///        kShortestIdle_s, zero, drift, noise, hum and spikes are absent. Hum is absent, too, if the scan
+///        rate cannot resolve 60 Hz (analysis::kLowestRateForHum_Hz).
 /// \param scan_rate_Hz  granted.
 /// \param rate  measured over all scans so far; nullopt if unknown.
 [[nodiscard]] daq::SelfCheck check_idle(base::ScanIndex first, std::span<const double> raw,

@@ -31,7 +31,7 @@ struct TestStart {
   daq::ClockStamp stamp;       ///< Of the block with the trigger, less the lateness of its reading.
   std::shared_ptr<const daq::SelfCheck> self_check;  ///< Null if there were no idle scans.
   bool by_command = false;
-  /// Coefficient read by the unloaded cell; nullopt if no quiet scans gave it.
+  /// Coefficient read by the unloaded cell before it, as Segmenter::unloaded_level().
   std::optional<double> unloaded_level = {};
 };
 

@@ -36,7 +36,7 @@ class UnloadedLevel {
   /// Shortest quiet stretch that gives a level before a test, or ends a test.
   static constexpr double kQuiet_s = 0.5;
 
-  /// \param scan_rate_Hz  > 0. \param stretch_s  length of a stretch; at least eight scans.
+  /// \param scan_rate_Hz  > 0. \param stretch_s  length of a stretch; less than eight scans counts as eight.
   /// \param step_coefficient  one A/D step; 0 if unknown.
   UnloadedLevel(double scan_rate_Hz, double stretch_s, double step_coefficient);
 

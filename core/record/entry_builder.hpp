@@ -27,8 +27,11 @@ class EntryBuilder {
   /// \param stamp  only its monotonic time is stored.
   [[nodiscard]] Bytes scans(daq::ScanIndex first, std::span<const double> raw, const daq::ClockStamp& stamp);
   /// Noise-free coefficients of consecutive scans that are in the journal already.
+  /// \param first  of scans that no earlier call had; read_journal() takes an overlap for damage.
   [[nodiscard]] Bytes true_coefficients(daq::ScanIndex first, std::span<const double> coefficient);
-  /// Codes of the second channel, of consecutive scans that are in the journal already.
+  /// Codes of the second channel. Otherwise as true_coefficients().
+  /// \param codes  −1 (none came) … maxdata of the header's board.second; read_journal() takes others, and
+  ///        any without board.second, for damage.
   [[nodiscard]] Bytes second(daq::ScanIndex first, std::span<const std::int32_t> codes);
   [[nodiscard]] Bytes spikes(std::span<const daq::ScanIndex> spikes);
   [[nodiscard]] Bytes gap(const daq::Gap& gap);

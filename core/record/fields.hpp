@@ -1,7 +1,9 @@
 /// \file
 /// Tables of the plain fields of a record's structs, with name, unit and meaning. The journal's JSON, the
-/// HDF5 writer and the HDF5 reader all use them, so that a field added here is stored by all. Not in the
-/// tables: enumerations, results, operator, metadata, and the plain members of RecordHeader and EndRecord.
+/// HDF5 writer and the HDF5 reader all use them, so that a field added here is stored by all. A number added
+/// must be optional: readers throw if a file, such as an older one, lacks a plain number. Not in the tables:
+/// enumerations, results, operator, metadata, gaps, events, clock anchors, and the plain members of
+/// RecordHeader and EndRecord.
 ///
 ///     for_each_field(header.tester, [](const FieldName& name, auto& value) { … });
 ///
@@ -214,7 +216,9 @@ void for_each_field(Fields& fields, Visitor&& visit) {
         fields.time_per_scan_s);
 }
 
-/// Columns of the table of cycles. \param visit  called as visit(FieldName, member pointer).
+/// Columns of the table of cycles. A new one goes to the end, and into came_later() of layout_tables.cpp,
+/// since older records lack it.
+/// \param visit  called as visit(FieldName, member pointer).
 template <typename Visitor>
 void for_each_cycle_column(Visitor&& visit) {
   using detect::Cycle;
@@ -247,7 +251,8 @@ void for_each_cycle_column(Visitor&& visit) {
         &Cycle::live_decision_time_s);
 }
 
-/// Columns of the table of true slips. \param visit  called as visit(FieldName, member pointer).
+/// Columns of the table of true slips. A journal does not say how many there are: readers expect these.
+/// \param visit  called as visit(FieldName, member pointer).
 template <typename Visitor>
 void for_each_true_cycle_column(Visitor&& visit) {
   using model::TrueCycle;

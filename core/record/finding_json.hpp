@@ -21,6 +21,7 @@ namespace stickslip::record {
 inline constexpr const char* kFindings = "findings";
 inline constexpr const char* kCodedFindings = "coded_findings";
 
+/// \param numbers  finite, as make_finding() leaves them: JSON has no others.
 template <typename Json>
 [[nodiscard]] Json numbers_json(std::span<const base::FindingNumber> numbers) {
   Json list = Json::array();

@@ -65,7 +65,8 @@ class GivenFile {
   std::shared_ptr<State> state_;
 };
 
-/// Opens an HDF5 file for reading: open(), share() and load(). Errors as theirs; a read error as in open().
+/// Opens a file that HDF5 is to read: open(), share() and load(). Does not check that it is one (is_hdf5()).
+/// Errors as theirs; a read error as in open().
 [[nodiscard]] base::Result<GivenFile> open_shared(const std::filesystem::path& path,
                                                   const FileCalls& calls = system_calls());
 

@@ -28,7 +28,8 @@ class HdfError : public std::runtime_error {
 /// Sets unclosed() to the library's innermost reason.
 void note_unclosed() noexcept;
 
-/// Owns an HDF5 id. Move-only. The destructor closes it; a failure goes to unclosed().
+/// Owns an HDF5 id. Move-only; assignment swaps the ids. The destructor closes it; a failure goes to
+/// unclosed().
 /// \tparam Close  the library's function for its kind.
 template <herr_t (*Close)(hid_t)>
 class Handle {
@@ -73,7 +74,8 @@ inline void check(herr_t status, const std::string& what) {
 }
 
 /// To be called in each thread before any other HDF5 function: switches off the library's exit handler, which
-/// crashes after a full disk, and its printing of errors in this thread. \throws HdfError.
+/// crashes after a full disk, and its printing of errors in this thread. create_file() and open_hdf5() call
+/// it. \throws HdfError.
 void prepare_hdf5();
 
 /// Memory and file type of a C++ number. Files are little-endian.

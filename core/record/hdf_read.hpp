@@ -24,9 +24,9 @@ namespace stickslip::record {
 
 /// Attribute that is one variable-length text.
 [[nodiscard]] std::string read_attribute(hid_t object, const std::string& name);
-/// As read_attribute(); nullopt if there is none.
+/// As read_attribute(); nullopt if there is none, or HDF5 cannot tell.
 [[nodiscard]] std::optional<std::string> find_attribute(hid_t object, const std::string& name);
-/// Attribute that is one number; nullopt if there is none.
+/// Attribute that is one number; nullopt if there is none, or HDF5 cannot tell.
 template <typename T>
 [[nodiscard]] std::optional<T> find_number_attribute(hid_t object, const std::string& name);
 

@@ -89,10 +89,13 @@ DatasetHandle write_texts(hid_t parent, const std::string& name, const std::vect
 /// for messages.
 void attach_scale(const DatasetHandle& column, const DatasetHandle& scale, const std::string& name);
 /// Array of numbers in row-major order; stored as by write_column().
+/// \param values  as many as the product of `shape`, which is not checked.
 template <typename T>
 DatasetHandle write_array(hid_t parent, const FieldName& name, std::span<const hsize_t> shape,
                           std::span<const T> values);
-/// Array of texts, no dimension zero; fixed length, compressed.
+/// Array of texts; fixed length, compressed.
+/// \param shape  nowhere zero.
+/// \param texts  as many as the product of `shape`, which is not checked.
 DatasetHandle write_text_array(hid_t parent, const std::string& name, std::span<const hsize_t> shape,
                                const std::vector<std::string_view>& texts);
 

@@ -41,15 +41,16 @@ inline constexpr std::string_view kRecordExtension = ".h5";
 class JournalWriter {
  public:
   /// Creates the file, which must not exist, locks it (journal_care.hpp), writes the header and makes file
-  /// and name durable. A header without uuid gets one. Errors (kFailure) leave no file behind.
+  /// and name durable. A header without uuid gets one. Errors: kFailure; its file is then removed if
+  /// possible.
   /// \param header  has a load cell if the board gives counts (contract).
   /// \param calls  must outlive the journal.
   [[nodiscard]] static base::Result<JournalWriter> create(const std::filesystem::path& path,
                                                           RecordHeader header,
                                                           const FileCalls& calls = system_calls());
 
-  // Every append either adds a complete entry, or returns an error (kFailure) and leaves the file unchanged,
-  // so that it can be repeated.
+  // Every append either adds a complete entry, or returns an error (kFailure), adds none, and can be
+  // repeated.
 
   /// \param first  not before the end of the scans written so far (contract).
   /// \param raw  consecutive, not empty; counts are whole numbers in 0 … maxdata (contract).
@@ -61,6 +62,8 @@ class JournalWriter {
                                                             std::span<const double> coefficient);
   /// Codes of the second channel, daq::SecondChannel::kNoCode where none came. Otherwise as
   /// append_true_coefficients().
+  /// \param codes  at most maxdata of the header's board.second; read_journal() takes others, and any without
+  ///        board.second, for damage.
   [[nodiscard]] base::Result<void> append_second(daq::ScanIndex first, std::span<const std::int32_t> codes);
   [[nodiscard]] base::Result<void> append_spikes(std::span<const daq::ScanIndex> spikes);
   [[nodiscard]] base::Result<void> append_gap(const daq::Gap& gap);
@@ -70,7 +73,8 @@ class JournalWriter {
   /// The last entry. Once this object is destroyed, finalise() can take the journal.
   [[nodiscard]] base::Result<void> append_end(const EndRecord& end);
 
-  /// fdatasync: everything appended so far survives a power cut if this succeeds.
+  /// As JournalFile::sync(): after a failure data may be lost, even if a later call succeeds. PatientJournal
+  /// writes them again.
   [[nodiscard]] base::Result<void> sync();
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return file_.path(); }
@@ -129,15 +133,16 @@ struct JournalReading {
 /// Whether read_journal() keeps the scans in memory or only counts them.
 enum class JournalScans { kKeep, kCount };
 
-/// Reads every complete entry, without a lock. Memory is that of the tables, and of the scans with kKeep.
-/// Errors: kFailure if the file cannot be read, or if its header is damaged but complete entries follow;
-/// kUsage if there is no such file, no complete entry in it, or a whole header that this program cannot read.
+/// Reads every complete entry, without a lock. Memory is that of the tables, 32 bytes for each entry, and
+/// with kKeep that of the scans. Errors: kFailure if the file cannot be read, or if its header is damaged but
+/// complete entries follow; kUsage if there is no such regular file, no complete entry in it, or a whole
+/// header that this program cannot read.
 [[nodiscard]] base::Result<JournalReading> read_journal(const std::filesystem::path& path,
                                                         JournalScans scans = JournalScans::kKeep,
                                                         const FileCalls& calls = system_calls());
 
-/// Source of a journal's scans, read from disk. Throws std::runtime_error if the file cannot be read or
-/// changed since read_journal().
+/// Source of a journal's scans, read from disk. Throws std::runtime_error if the file cannot be read, or
+/// an entry is no longer where read_journal() found it.
 class JournalScanSource final : public ScanSource {
  public:
   /// \param reading  of this journal; must outlive the object, as must `calls`.

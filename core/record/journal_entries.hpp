@@ -39,8 +39,8 @@ class JournalEntries {
   /// The next complete entry, valid until the next call of next() or at(). Nullopt at the end and after an
   /// error().
   [[nodiscard]] std::optional<Entry> next();
-  /// The complete entry that begins at byte `position`; nullopt if there is none, or on an error(). Valid as
-  /// that of next(), which goes on where it was unless there was an error().
+  /// The complete entry that begins at byte `position`; nullopt if there is none, or after an error(). Valid
+  /// as that of next(), which goes on where it was unless there was an error().
   [[nodiscard]] std::optional<Entry> at(std::uint64_t position);
 
   /// Position of the latest entry from next().

@@ -19,7 +19,7 @@ namespace stickslip::record {
 class JournalFile {
  public:
   /// Creates the file, which must not exist, locks it (journal_care.hpp), writes its first entry, and syncs
-  /// content and name. Errors (kFailure) leave no file behind.
+  /// content and name. Errors: kFailure; its file is then removed if possible.
   /// \param header  bytes of the first entry.
   /// \param calls  must outlive the object.
   [[nodiscard]] static base::Result<JournalFile> create(const std::filesystem::path& path,
@@ -47,8 +47,9 @@ class JournalFile {
   [[nodiscard]] base::Result<void> append(std::span<const std::byte> entries);
 
   /// fdatasync: everything appended so far survives a power cut if this succeeds. If it fails, the data
-  /// appended since the last success may be lost: the kernel may have dropped them [fsync(2); Rebello et al.
-  /// 2020, "Can applications recover from fsync failures?"].
+  /// appended since the last success may be lost even if a later call succeeds: the kernel may have dropped
+  /// them [fsync(2); Rebello et al. 2020, "Can applications recover from fsync failures?"]. Remove them by
+  /// cut_to() and append them again.
   [[nodiscard]] base::Result<void> sync();
 
   /// Truncates the file to `size` bytes, the end of an entry, now or before the next append.

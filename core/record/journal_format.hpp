@@ -33,7 +33,8 @@ enum class EntryType : std::uint16_t {
   kSecond = 10,    ///< i32: codes of the second channel of consecutive scans, −1 where none came.
 };
 
-/// Number type of the payload of kScans. Other types of entries have one format each.
+/// Number type of the payload of kScans, and kF64 of kTrueForce. Other types of entries have kNone and one
+/// format each.
 enum class Encoding : std::uint16_t { kNone = 0, kU16 = 1, kU32 = 2, kF64 = 3 };
 
 struct EntryHead {

@@ -84,7 +84,7 @@ void put(Json& object, std::string_view key, const T& value) {
 }
 
 /// Reads the value under a key; inverse of put(). Without the key an optional, text or column becomes empty.
-/// \throws std::invalid_argument if any other value is missing; nlohmann::json::exception for another type.
+/// \throws std::exception if any other value is missing, or for another type.
 template <typename T>
 void take(const Json& object, std::string_view key, T& value) {
   const auto found = object.find(std::string{key});

@@ -19,21 +19,24 @@ void judge_journal(const std::filesystem::path& path, Verdict& verdict);
 
 // For records.
 
-/// Reads every data set under `file`, to locate damage: those in chunks chunk by chunk, others as a whole.
+/// Reads every data set under `file`, except texts of variable length, to locate damage: those in chunks
+/// chunk by chunk, others as a whole.
 void judge_chunks(hid_t file, Verdict& verdict);
 /// Judges the rows of raw: order of the scans, jumps without a gap, values that the board cannot give, and
-/// the columns computed from the others (time, force, flags, second channel). Calls judge_clocks(). Sets
-/// scans_present and sha256_found, and compares neither.
+/// what is computed from other columns (time, force, flag of saturation, second channel). If there is a scan,
+/// calls judge_clocks(): call judge_status() before. Sets scans_present and sha256_found, and compares
+/// neither.
 /// \param record  everything except scans and spikes.
 /// \throws std::exception if a column is missing, unreadable or of another length, or an index out of range.
 void judge_raw(hid_t entry, const Record& record, Verdict& verdict);
 
 // For records and journals.
 
-/// Judges the clock anchors. Damage: scans or monotonic times that do not rise, or, in a complete test, an
-/// anchor outside it. Incomplete: a scan rate that differs from the granted one by more than 1 % plus 5
-/// standard errors. A note: the date was set by more than 1 s, or the scans were read too late to tell the
-/// rate. Rate and date are judged only if the verdict has no damage. Call judge_status() before.
+/// Judges the clock anchors. Damage: scans or monotonic times that do not rise, or an anchor outside a
+/// complete test. Incomplete: a scan rate that differs from the granted one by more than 1 % plus 5 standard
+/// errors. A note: an anchor outside any other test, the date was set by more than 1 s, or the scans were
+/// read too late to tell the rate. Rate and date are judged only if the verdict has no damage. Call
+/// judge_status() before.
 /// \param first,end  scans of the test: [first, end).
 void judge_clocks(const Record& record, daq::ScanIndex first, daq::ScanIndex end, Verdict& verdict);
 /// Judges the facts of the header. Damage: no scan rate, no UUID, counts or volts without load cell, counts

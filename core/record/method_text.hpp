@@ -14,6 +14,7 @@ namespace stickslip::record {
 /// the same value: "penner-1995 kinetic_cycles=10", "iso-8295 kinetic_travel=0:0.06 sled_mass=0.2~0.002
 /// sled_area=0.004 speed=0.0016666666666666668 replicates=3". "~" stands before a tolerance. static_slip is
 /// left out if it is 1, kinetic_cycles if there is a kinetic_travel, and a condition if it is open.
+/// \param method  its name is not empty and has no space, else the text cannot be read back.
 [[nodiscard]] std::string method_text(const model::Method& method);
 
 /// Reads what method_text() wrote; an empty text is the default method. Error: kUsage.

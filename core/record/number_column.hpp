@@ -41,6 +41,7 @@ struct ArrayShape {
 
 /// Appends each column of an array: `column` with size and part. Appends `column` once, with its reason in
 /// `why`, if shape_of() refuses the array.
+/// \param column  its `why` must be empty.
 void add_parts(NumberColumn column, const std::vector<std::uint64_t>& axes,
                std::vector<NumberColumn>& columns);
 

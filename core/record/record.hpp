@@ -145,7 +145,7 @@ struct RecordHeader {
   std::optional<std::int64_t> test_number;
   /// Scan at which the force or a command began the test; absent if imported or simulated without a clock.
   std::optional<daq::ScanIndex> trigger_scan;
-  /// Time of the trigger scan, ns since 1970; absent if unknown. Imported: of the first scan of the trace.
+  /// Time of the trigger scan, ns since 1970; absent if unknown. Imported: of the first scan of the test.
   std::optional<std::int64_t> start_realtime_ns;
   daq::BoardInfo board;
   std::optional<daq::LoadCell> load_cell;  ///< Required if the board gives counts.

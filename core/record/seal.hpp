@@ -2,7 +2,7 @@
 /// The seal of a record: the number of scans, and a checksum of the whole file, stored inside it.
 ///
 ///     { … write_seal(entry, scan_count); }   // while the file is built
-///     seal_file(path);                       // after it is closed
+///     seal_file(path, calls);                // after it is closed
 ///     check_seal(entry, file);               // any time later
 ///
 /// HDF5 has checksums for chunks and for most of its own structures, but none for small data sets such as

@@ -56,7 +56,7 @@ struct SweepRun {
 };
 
 /// The runs by columns, about 1.1 kB for each run. Row i of each column belongs to run i. Until set() is
-/// called for a run, its numbers are NaN and its indices 0.
+/// called for a run, its numbers are NaN, its indices and its seed 0.
 class SweepTable {
  public:
   /// A result of all runs.
@@ -82,7 +82,7 @@ class SweepTable {
   [[nodiscard]] std::size_t run_count() const noexcept { return regime_.size(); }
   [[nodiscard]] const std::vector<Result>& results() const noexcept { return results_; }
   [[nodiscard]] const std::vector<Truth>& truths() const noexcept { return truths_; }
-  /// \param name  must be that of a result, or of a truth for truth().
+  /// \param name  of a result; for truth() of a truth (contract).
   [[nodiscard]] const Result& result(std::string_view name) const;
   [[nodiscard]] const Truth& truth(std::string_view name) const;
   /// Distinct reasons; the first is empty, for results with a value.

@@ -21,8 +21,8 @@ namespace stickslip::record {
 /// The judgement about a file: of a record or journal, by the worst of its findings.
 enum class Judgement {
   kComplete,  ///< A finished record: everything is there and agrees with everything else.
-  /// Undamaged, but data are missing or not reliable: a gap, a status other than complete, no seal, a record
-  /// of stickslipd without configuration, clocks that contradict the scan rate; and every journal.
+  /// Undamaged, but data are missing or not reliable: a gap, a status other than complete, a seal left open,
+  /// a record of stickslipd without configuration, clocks that contradict the scan rate; and every journal.
   kIncomplete,
   kDamaged,    ///< Checksums or contents are inconsistent, or the file is truncated.
   kNotJudged,  ///< The file does not exist, has an unknown kind or version, or cannot be read now.

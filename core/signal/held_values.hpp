@@ -21,7 +21,8 @@ namespace stickslip::signal {
 /// Largest probability of finding a flat top, and of finding a frozen value, in a test without that fault.
 inline constexpr double kFalseAlarm = 1e-6;
 
-/// Whether a scan is left out: a spike, or at a rail of the converter. \param scan  index of its value.
+/// Whether a scan is left out: a spike, or at a rail of the converter. Must be set.
+/// \param scan  index of its value.
 using LeftOut = std::function<bool(std::size_t scan)>;
 
 /// Scans of equal or nearly equal values.
@@ -43,7 +44,8 @@ struct HeldValues {
 /// steps, σ/4, σ and 2 σ; the result is the one with the most scans. A clipped signal that gets as much noise
 /// behind the amplifier as before it is not told from a sound one.
 /// \param step  of the converter, or the smallest difference of neighbours as measured.
-/// \return nullopt if there is none; also unless the largest value and the step are positive.
+/// \return nullopt if there is none; also unless the largest value and the step are positive, and unless 68
+/// consecutive scans outside the band show noise clearly above that of rounding.
 [[nodiscard]] std::optional<HeldValues> flat_top(const base::LongColumn<double>& values,
                                                  const LeftOut& left_out, double step);
 
@@ -51,7 +53,7 @@ struct HeldValues {
 /// with probability N n p^(n − 1) at most, which must not exceed kFalseAlarm. Only values of at least a third
 /// of the largest count, since an unloaded cell may be quieter than a pull.
 /// \param step  as for flat_top().
-/// \return nullopt if there is none of at least 16 scans; also unless largest value and step are positive.
+/// \return nullopt if there is none of at least 16 scans; also for the reasons that flat_top() has.
 [[nodiscard]] std::optional<HeldValues> frozen_values(const base::LongColumn<double>& values,
                                                       const LeftOut& left_out, double step);
 

@@ -22,8 +22,10 @@ namespace stickslip::sim {
 [[nodiscard]] double belt_speed_m_per_s(const std::vector<BeltSegment>& belt, double time_s);
 
 /// Smallest (≤ 0) and largest (≥ 0) net travel ∫v dt of the belt, m, from scan 0 to any time up to
-/// duration_s. Ignores halt_when_unloaded: the true range may be narrower, as nothing moves after a segment
-/// that halts in any scene.
+/// duration_s. Ignores halt_when_unloaded: the true range lies within this one as long as nothing moves after
+/// a segment that halts, as in all scenes; a later pull may exceed it.
+/// \param belt  without a segment that has both jerk and a decaying speed.
+/// \param duration_s  finite.
 [[nodiscard]] std::pair<double, double> belt_travel_range_m(const std::vector<BeltSegment>& belt,
                                                             double duration_s);
 

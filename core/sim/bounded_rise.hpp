@@ -15,8 +15,8 @@ namespace stickslip::sim {
 /// derivative in it. So f has no zero before that of the parabola, which is the next point. The points
 /// converge to a simple zero like Newton's method, never pass it, and miss no touching of zero.
 ///
-/// \param f          value(t), its derivative slope(t), and bend(from, to) ≥ its second derivative there.
-///                   f(0) = 0 does not count if f falls at first.
+/// \param f          value(t), its derivative slope(t), and a finite bend(from, to) ≥ its second derivative
+///                   there. f(0) = 0 does not count if f falls at first.
 /// \param longest_s  end of the search; may be very long, but finite.
 /// \param stretch_s  > 0, length of the first interval; later ones may be longer.
 /// \param rounding   ≥ 0: for t > 0 a value of at least −rounding counts as zero.

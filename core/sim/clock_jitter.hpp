@@ -25,8 +25,8 @@ class JitteringClock {
   void restart(std::uint64_t seed);
 
   /// Instant of a scan. Call for all scans in order, from 0 on. Instants are clipped so that none lies before
-  /// the start or the one before. So scan 0 is never early. Later scans are clipped only by deviations of
-  /// seven standard deviations or more, if the standard deviation is at most a tenth of a scan period.
+  /// the start or the one before. So scan 0 is never early. Later scans are clipped only where the errors of
+  /// two neighbours differ by a scan period or more: ten standard deviations, if sd_s is a tenth of it.
   [[nodiscard]] ScanTime instant(std::int64_t scan);
 
  private:

@@ -71,9 +71,10 @@ class Cvode {
   /// Starts again at t = 0 with this state. Widened tolerances and the counts stay.
   void restart(const OdeState& state);
 
-  /// Takes one internal step, or the part of it up to an event; the next call takes the rest, or restart()
-  /// begins another motion there. If CVODE fails, it goes on from the last good point with ten times the
-  /// tolerance, from then on. \throws std::runtime_error if it fails with 10⁶ times the tolerance too.
+  /// Takes one internal step, or the part of it up to an event. There restart() begins another motion; only
+  /// after an event whose slope is always 0 may the next call take the rest instead. If CVODE fails, it goes
+  /// on from the last good point with ten times the tolerance, from then on. \throws std::runtime_error if it
+  /// fails with 10⁶ times the tolerance too; then only restart() may follow.
   Step step();
 
   /// State inside the last step(), or at t = 0 right after restart(). \param t_s  is clipped to CVODE's step.

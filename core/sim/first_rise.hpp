@@ -37,7 +37,7 @@ struct Curve {
 
 /// First t in [from, end] at which y(t) rises through zero; nullopt if there is none. A value at `from`
 /// within rounding of zero counts as below, so that the result is `from` where y leaves zero upwards at once.
-/// If y(from) is above zero, y has to fall below zero first. end_s may be very long, but finite.
+/// If y(from) is above zero, y has to fall to zero first. end_s may be very long, but finite.
 ///
 /// Method: Rolle's theorem. d/dt lowers the polynomial by a degree, d/dt + λ removes a decay, until only the
 /// oscillation (or a constant) is left, whose zeros are known in closed form. Between two neighbouring zeros

@@ -8,9 +8,9 @@
 
 namespace stickslip::sim {
 
-/// Fractional part of the mains cycles since the first scan. Its error is within 2 ulp of one cycle, for any
-/// scan index from 0 to 2⁵³; by that it may lie outside of 0 to 1. The product of frequency and index is kept
-/// in two doubles [error-free product by fused multiply-add: Ogita, Rump and Oishi, SIAM J. Sci. Comput.
+/// Mains cycles since the first scan, less a whole number: from 0 to 1 or a little outside. The error is
+/// within 2 ulp of one cycle, for any scan index from 0 to 2⁵³. The product of frequency and index is kept in
+/// two doubles [error-free product by fused multiply-add: Ogita, Rump and Oishi, SIAM J. Sci. Comput.
 /// 26(6):1955–1988, 2005, Alg. 3.5], and fmod is exact.
 [[nodiscard]] double mains_cycles(double frequency_Hz, double scan_rate_Hz, std::int64_t scan) noexcept;
 

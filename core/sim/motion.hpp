@@ -53,7 +53,8 @@ struct KineticDrift {
 ///     K(V) = K + per_speed · V + stribeck_rise · e^(−(V/stribeck_speed)^stribeck_exponent).
 /// [Armstrong-Hélouvry, Dupont and Canudas de Wit, Automatica 30(7):1083–1138, 1994, (4)]
 struct VelocityDependence {
-  double per_speed_s_per_m = 0.0;  ///< Any sign; below zero friction decreases with speed.
+  /// Any sign. Below zero friction decreases with speed; nothing keeps K(V) ≥ 0.
+  double per_speed_s_per_m = 0.0;
   /// Increase of K at V → 0; from 0 to S − K. A contact with a smaller S − K has that as its increase.
   double stribeck_rise = 0.0;
   double stribeck_speed_m_per_s = 1.0;  ///< > 0
@@ -78,16 +79,18 @@ struct RateAndState {
 /// All parameters of the motion.
 struct Motion {
   model::Oscillator oscillator;
-  double mu_s = 0.0;  ///< S ≥ mu_k
-  double mu_k = 0.0;  ///< K ≥ 0
-  double gravity_m_per_s2 = 0.0;
-  /// Slip starts when spring and damper together reach S; false: when the spring alone does.
+  double mu_s = 0.0;              ///< S ≥ mu_k
+  double mu_k = 0.0;              ///< K ≥ 0
+  double gravity_m_per_s2 = 0.0;  ///< > 0
+  /// Slip starts when spring and damper together reach S; false: when the spring does. The share a/g of the
+  /// belt's acceleration a is added in either case.
   bool damper_counts_at_onset = false;
   PaperSettings paper;            ///< Effects that vary S and K.
   bool one_way_coupling = false;  ///< The coupling cannot push: it goes slack, without force.
   std::vector<BeltSegment> belt;  ///< In the order of time, from scan 0; the belt rests after the last.
   /// Slack of the coupling at scan 0, ≥ 0; above zero only with one_way_coupling. The sled then moves with
-  /// the belt, at the speed of the first segment, even if that has no length.
+  /// the belt, at the speed of the first segment, even if that has no length; with rate_and_state it is at
+  /// rest.
   double startup_slack_m = 0.0;
   std::optional<KineticDrift> kinetic_drift;
   std::optional<VelocityDependence> velocity_dependence;  ///< Only for NumericSolver.

@@ -63,12 +63,13 @@ class MotionSolver {
 
 /// Whether Propagator can solve this motion. It cannot with velocity_dependence or rate_and_state; with a
 /// drift of K that is exponential over belt travel, if the speed changes within a segment; and with a drift
-/// of K if a decay, its own or that of the belt's speed, is nearly in resonance with the oscillator
-/// (|distance_from_resonance()| < 1e-3), which takes γ of nearly 2ω₀ or more.
+/// of K if a decay, its own or, over belt travel, that of the belt's speed, is nearly in resonance with the
+/// oscillator (|distance_from_resonance()| < 1e-3), which takes γ of nearly 2ω₀ or more.
 [[nodiscard]] bool has_closed_form(const Motion& motion) noexcept;
 
 /// Makes the solver of a motion: Propagator if it has_closed_form(), since closed forms are the fastest and
-/// the most accurate (docs/accuracy.md); else NumericSolver. The motion is copied.
+/// the most accurate (docs/accuracy.md); else NumericSolver, whose calls may throw.
+/// \param motion  in which expect_sound() finds no fault; is copied.
 /// \param scan_rate_Hz > 0.
 /// \param accuracy  asked of the coefficient, > 0; method() tells the one that is expected.
 /// \param observer may be null; outlives the solver.

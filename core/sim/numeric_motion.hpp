@@ -53,7 +53,8 @@ class NumericMotion {
                                                                         double scan_rate_Hz, double accuracy,
                                                                         MotionObserver* observer);
 
-/// Longest time before a slip's clock restarts at zero, so that its resolution stays at 2⁻⁵²·64 s = 1e-14 s.
+/// Time after which the clock of a piece that CVODE solves restarts at zero, so that its resolution stays
+/// near 2⁻⁵²·64 s = 1e-14 s.
 inline constexpr double kLongestPiece_s = 64.0;
 
 /// Choice of CVODE's step tolerance for a requested accuracy.

@@ -23,7 +23,7 @@ namespace stickslip::sim {
 /// itself may. Thread-bound.
 ///
 /// next(), at(), follow_to() and skip() throw std::runtime_error if CVODE fails even with 10⁶ times the
-/// chosen tolerance; a smaller widening shows in method().accuracy.
+/// chosen tolerance; then only restart() may follow. A smaller widening shows in method().accuracy.
 class NumericSolver final : public MotionSolver {
  public:
   /// \param motion  is copied. \param scan_rate_Hz > 0.

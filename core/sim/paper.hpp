@@ -65,7 +65,8 @@ struct Coefficients {
   double mu_k = 0.0;
 };
 
-/// Effect that changes S and K of new contacts. It has its own state and its own random stream.
+/// Effect that changes S and K of new contacts. It has its own state and its own random stream. Call
+/// restart() first.
 class PaperEffect {
  public:
   virtual ~PaperEffect() = default;
@@ -85,7 +86,7 @@ class PaperEffect {
 [[nodiscard]] std::unique_ptr<PaperEffect> make_scatter(const Scatter& settings);
 [[nodiscard]] std::unique_ptr<PaperEffect> make_first_peak(const FirstPeak& settings);
 
-/// S and K of the present contact, after all effects.
+/// S and K of the present contact, after all effects. Call restart() and renew() first.
 class Paper {
  public:
   /// \param mean  S and K before the effects.

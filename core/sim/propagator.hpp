@@ -11,7 +11,7 @@
 /// counts: the friction that moves the sled with the belt is q = c + a/g.
 ///
 /// Each piece is an oscillation on a course: c(t) = h(t) + p(t). While the belt's speed and K are constant
-/// ("plain") p is a line, a parabola or K, and everything about it is written out; else p is an
+/// ("plain") p is a line, a parabola or ±K, and everything about it is written out; else p is an
 /// ExponentialPolynomial.
 #pragma once
 

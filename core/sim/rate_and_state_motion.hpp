@@ -30,8 +30,8 @@
 
 namespace stickslip::sim {
 
-/// NumericMotion with rate-and-state friction. Aborts if the motion also has velocity_dependence or
-/// kinetic_drift; ignores S, K, `paper`, damper_counts_at_onset and the seed.
+/// NumericMotion of a motion with rate_and_state. Aborts if it also has velocity_dependence or kinetic_drift;
+/// ignores S, K, `paper`, damper_counts_at_onset and the seed.
 class RateAndStateMotion final : public NumericMotion {
  public:
   RateAndStateMotion(const Motion& motion, double scan_rate_Hz, double accuracy, MotionObserver* observer);

@@ -35,13 +35,13 @@ struct SceneLoadCell {
 
 /// Effect `constant_speed` (motion): a whole test as an operator runs it.
 struct ConstantSpeed {
-  double idle_s = 0.0;              ///< At rest before the pull, for the scans before the trigger.
-  double pull_speed_m_per_s = 0.0;  ///< > 0
-  double pull_s = 0.0;
+  double idle_s = 0.0;                ///< At rest before the pull, for the scans before the trigger.
+  double pull_speed_m_per_s = 0.0;    ///< > 0
+  double pull_s = 0.0;                ///< > 0
   double stop_s = 0.0;                ///< Belt at rest, coupling left stretched.
   double return_speed_m_per_s = 0.0;  ///< > 0; the carriage goes back until the force is zero.
-  double return_s = 0.0;              ///< Time for the return; the carriage waits for the rest of it.
-  double rest_s = 0.0;                ///< Unloaded, before the next test.
+  double return_s = 0.0;              ///< For the return and a wait; too short, it leaves a force.
+  double rest_s = 0.0;                ///< Belt at rest, before the next test.
 
   [[nodiscard]] double duration_s() const noexcept { return idle_s + pull_s + stop_s + return_s + rest_s; }
 };
@@ -61,7 +61,7 @@ struct ExponentialStart {
 /// Effect `jerk_limited_start`: the belt reaches the pull speed V after 2√(V/j), its acceleration first
 /// rising, then falling.
 struct JerkLimitedStart {
-  double jerk_m_per_s3 = 0.0;  ///< j > 0
+  double jerk_m_per_s3 = 0.0;  ///< j > 0, with 2√(V/j) ≤ pull_s.
 };
 
 /// Effect `piecewise_speed` (motion), in place of `constant_speed`: the speed is linear between points.
@@ -174,7 +174,8 @@ struct Pull {
 };
 
 /// The pull of `constant_speed`; or of `piecewise_speed`, from the start of the first movement, in either
-/// direction, to the end of the last one or of the scene. nullopt if the belt never moves.
+/// direction, to the end of the last one or of the scene. A movement after the end of the scene
+/// counts too: start_s may then exceed end_s. nullopt if the belt never moves.
 [[nodiscard]] std::optional<Pull> pull_of(const Scene& scene);
 
 /// Pull speed of `constant_speed`, which is reached later with `exponential_start` or `jerk_limited_start`;
@@ -183,7 +184,8 @@ struct Pull {
 
 /// Belt speed over time, counted from the first movement; nullopt for a steady pull and for a belt that never
 /// moves forwards. Of `constant_speed` it shows pull and stop, not the return of the carriage, whose end
-/// depends on the force. Curves are approximated by lines within 0.1 % of the speed's change.
+/// depends on the force; if stop_s is 0 the last speed goes on for ever. Curves are approximated by lines
+/// within 0.1 % of the speed's change.
 [[nodiscard]] std::optional<model::PullSpeed> pull_speed_of(const Scene& scene);
 
 /// True scan rate at this nominal rate, with the clock's error.

@@ -30,7 +30,10 @@
 namespace stickslip::sim {
 
 /// Simulates one repetition of a scene, reading by reading, with the effects that the scene lists. Its memory
-/// is constant. next() throws std::runtime_error if CVODE fails (NumericSolver). Thread-bound.
+/// is constant. Thread-bound.
+///
+/// next() throws std::runtime_error if CVODE fails (NumericSolver), and so do restart() and the constructor
+/// if the first scans are missing; then only restart() may follow.
 class SceneRun {
  public:
   /// Starts at the first scan with the scene's seed, as restart() does.

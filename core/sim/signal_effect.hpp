@@ -11,7 +11,7 @@
 
 namespace stickslip::sim {
 
-/// Effect on the readings. It has its own state and its own random stream, if any.
+/// Effect on the readings. It has its own state and its own random stream, if any. Call restart() first.
 class SignalEffect {
  public:
   virtual ~SignalEffect() = default;

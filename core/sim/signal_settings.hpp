@@ -14,8 +14,8 @@ struct WhiteNoise {
 
 /// Effect `drift_noise`: noise whose density is proportional to 1/f between two frequencies.
 struct DriftNoise {
-  double sd_V = 0.0;  ///< Of the whole drift.
-  double lowest_frequency_Hz = 0.0;
+  double sd_V = 0.0;                  ///< Of the whole drift.
+  double lowest_frequency_Hz = 0.0;   ///< > 0
   double highest_frequency_Hz = 0.0;  ///< At least ten times the lowest.
 };
 
@@ -43,7 +43,7 @@ struct Spikes {
 struct Quantisation {
   int bits = 16;  ///< 1 … 32
   double range_min_V = -10.0;
-  double range_max_V = 10.0;
+  double range_max_V = 10.0;  ///< > range_min_V
 
   /// Highest count, 2^bits − 1.
   [[nodiscard]] std::uint32_t maxdata() const noexcept {

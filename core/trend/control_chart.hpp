@@ -66,17 +66,18 @@ struct ChartAlarm {
   std::int64_t onset = 0;  ///< Index of the first value after the arm was 0 last: the estimated change.
   std::int64_t told = 0;   ///< Index of the value that told it.
   double height = 0.0;     ///< Of that arm with this value: above kDecisionInterval.
-  double shift = 0.0;      ///< Mean since the onset less the mean before, in the unit of the values.
+  double shift = 0.0;      ///< Mean since the onset less that of all before, in the unit of the values.
   double standard_deviation = 0.0;  ///< Of the baseline at the onset.
 };
 
 /// The chart of one quantity, fed value by value.
 class ControlChart {
  public:
-  /// \param value  finite. \return an alarm if this value raises one.
+  /// An alarm sets both arms to 0 and ends its excursion, whose values then join the baseline.
+  /// \param value  finite (contract). \return an alarm if this value raises one.
   std::optional<ChartAlarm> add(double value);
 
-  /// Sets both arms to 0; the baseline stays.
+  /// Sets both arms to 0; the baseline stays, and what waits outside joins it with the next value.
   void restart_arms();
 
   /// Values added.

@@ -95,7 +95,8 @@ struct ChartState {
 };
 
 /// The charts of one tester. The reference chart takes tests whose sample is the reference paper: S − K, or K
-/// if its first test has no S − K, at that test's pull speed within 5 %.
+/// if its first test has no S − K, at that test's pull speed within 5 %; at unknown speeds if its
+/// own is.
 class TesterCharts {
  public:
   /// \param reference  name of the sample that is the reference paper; empty: its chart is off.
