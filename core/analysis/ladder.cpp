@@ -163,11 +163,11 @@ base::Finding misfit_finding(const Misfit& misfit, const TestResults& results) {
       text += fmt::format(", most in the {}", kSlipPartNames[static_cast<std::size_t>(*part)]);
     }
   } else {
-    const SlipPart largest = part.value_or(SlipPart::kFall);
-    text =
-        fmt::format("the fit leaves residuals of {:.2f} times the scan noise, {:.2f} in the {} of the slips",
-                    misfit.residual_sigmas(), misfit.residual_sigmas(largest),
-                    kSlipPartNames[static_cast<std::size_t>(largest)]);
+    text = fmt::format("the fit leaves residuals of {:.2f} times the scan noise", misfit.residual_sigmas());
+    if (part) {
+      text += fmt::format(", {:.2f} in the {} of the slips", misfit.residual_sigmas(*part),
+                          kSlipPartNames[static_cast<std::size_t>(*part)]);
+    }
   }
   text += fmt::format(
       "; a likely cause is {}; S - K is uncertain by {:.2g}, its distance to turning points "

@@ -561,7 +561,8 @@ Estimate TestAnalysis::mu_slope(const estimate::Trace& trace, const base::LongCo
     }
     parts.push_back(slope(*found.tester));
     if (!parts.back().value || !parts.back().standard_error)
-      return Estimate::none(fmt::format("part {} of {} of the test has none", part + 1, kParts));
+      return Estimate::none(
+          fmt::format("part {} of {} of the test has none: {}", part + 1, kParts, parts.back().reason));
   }
   const double probability = probability_of_agreement(parts);
   if (probability >= kLeastAgreement) return whole;

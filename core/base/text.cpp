@@ -36,7 +36,7 @@ constexpr bool deceives(char32_t code) noexcept {
   const auto within = [code](char32_t first, char32_t last) { return code >= first && code <= last; };
   return code < 0x20 || within(0x7F, 0x9F) || code == 0x61C || code == 0x200B || code == 0x200E ||
          code == 0x200F || within(0x2028, 0x202E) || within(0x2060, 0x206F) || code == 0xFEFF ||
-         within(0xFFF9, 0xFFFB) || code == 0x180E || within(0xE0000, 0xE007F);
+         within(0xFFF9, 0xFFFB) || within(0xE0000, 0xE007F);
 }
 
 void add_shown(std::string& out, std::string_view text, const Character& character) {

@@ -244,6 +244,7 @@ void SlipFollower::test_capture(double sigma, double decisive) noexcept {
   if (!belt_changed(with_other.residual_sigmas, now_.evidence.residual_sigmas)) return;
   now_.evidence = with_other;
   now_.shared = prior.shared;
+  now_.first_fit.reset();
   now_.test_from_s = base::kNaN;
 }
 

@@ -169,7 +169,8 @@ base::Result<void> publish(const Record& record, const ScanSource& scans, const 
                            const FileCalls& calls, const TakeEnd& take_end = {}) {
   STICKSLIP_EXPECTS(record.end);
   if (record.header.board.quantity == daq::RawQuantity::kCounts && !record.header.load_cell)
-    return base::failure("{}: counts without the gain of a load cell are no force", path.string());
+    return base::failure("{}: cannot be made: its counts have no gain of a load cell, and are no force",
+                         path.string());
   if (auto is_new = check_new(path); !is_new) return is_new;
   const auto part = with_suffix(path, ".part");
   auto published = build_verified(record, scans, take_end, part, calls);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <new>
 #include <vector>
 
 #include "core/record/hdf_read.hpp"
@@ -19,6 +20,7 @@ constexpr int kMostNamed = 100;
 struct Walk {
   Verdict* verdict;
   std::string error;  ///< What stopped the walk; empty if nothing did.
+  bool is_out_of_memory;
 };
 
 /// Elements of a chunk or of a whole data set, within reason.
@@ -119,18 +121,21 @@ herr_t visit(hid_t file, const char* name, const H5O_info_t* object, void* data)
   try {
     if (object->type == H5O_TYPE_DATASET) judge_dataset(file, name, *walk.verdict);
     return 0;
+  } catch (const std::bad_alloc&) {
+    walk.is_out_of_memory = true;
   } catch (const std::exception& error) {
     walk.error = error.what();
-    return -1;
   }
+  return -1;
 }
 
 }  // namespace
 
 void judge_chunks(hid_t file, Verdict& verdict) {
-  Walk walk{&verdict, {}};
-  if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, visit, &walk, H5O_INFO_BASIC) < 0)
-    verdict.damage("file", walk.error.empty() ? "not every object in it can be opened" : walk.error);
+  Walk walk{&verdict, {}, false};
+  if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, visit, &walk, H5O_INFO_BASIC) >= 0) return;
+  if (walk.is_out_of_memory) throw std::bad_alloc{};
+  verdict.damage("file", walk.error.empty() ? "not every object in it can be opened" : walk.error);
 }
 
 }  // namespace stickslip::record

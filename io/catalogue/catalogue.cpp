@@ -155,7 +155,7 @@ void follow_and_find(const std::string& index_path, const fs::path& folder, cons
   found.match_count = index.count(query);
   found.entries = index.find(query, found.match_count);
   // Another search may have changed the index in between.
-  found.match_count = std::max(found.match_count, found.entries.size());
+  found.match_count = query.most ? std::max(found.match_count, found.entries.size()) : found.entries.size();
   found.unread = index.unread();
 }
 

@@ -330,6 +330,7 @@ class Importer {
     const RowView value = value_.part(begin, count);
     const auto run = std::make_shared<record::ScanColumns>(request_.scratch_folder);
     double rate_Hz = 0.0;
+    bool coarse = false;
     if (time_s_.empty()) {
       rate_Hz = *request_.rate_Hz;
       Grid grid;
@@ -344,6 +345,7 @@ class Importer {
       if (!grid) return tl::unexpected(grid.error());
       tell(*grid, begin);
       rate_Hz = grid->rate_Hz;
+      coarse = !grid->rate_checked;
       if (grid->uniform) {
         take_rows(*grid, value, *run);
       } else {
@@ -356,7 +358,13 @@ class Importer {
                                request_.path, count - scans, count,
                                base::one_line(dialect_.columns[columns_.value].text, 40));
     }
-    return add_tests(run, rate_Hz, start_of_run(begin));
+    // Where the times are too coarse a row is a scan, and has the only time.
+    return add_tests(run, rate_Hz, [&](daq::ScanIndex scan) -> std::optional<std::int64_t> {
+      if (!start_ns_ || time_s_.empty()) return start_ns_;
+      const double offset_s = coarse ? time_s_[begin + static_cast<std::size_t>(scan)]
+                                     : time_s_[begin] + static_cast<double>(scan) / rate_Hz;
+      return later(*start_ns_, offset_s - time_s_.front());
+    });
   }
 
   void tell(const Grid& grid, std::size_t begin) {
@@ -377,16 +385,9 @@ class Importer {
       note("{} rows with the time of the row before left out", doubled);
   }
 
-  /// Time of the first scan of a run, ns since 1970; unknown if its clock began anew.
-  [[nodiscard]] std::optional<std::int64_t> start_of_run(std::size_t begin) const {
-    if (!start_ns_ || begin == 0) return start_ns_;
-    if (!(time_s_[begin] >= time_s_[begin - 1])) return std::nullopt;
-    return later(*start_ns_, time_s_[begin] - time_s_.front());
-  }
-
-  /// \param start_ns  time of the first scan of the run, since 1970.
+  /// \param start_of  time of a scan of the run, ns since 1970; nullopt if unknown.
   Result<void> add_tests(const std::shared_ptr<const record::ScanColumns>& run, double rate_Hz,
-                         std::optional<std::int64_t> start_ns) {
+                         const std::function<std::optional<std::int64_t>(daq::ScanIndex)>& start_of) {
     record::Record whole;
     record::RecordHeader& header = whole.header;
     header.title = std::filesystem::path{request_.path}.stem().string();
@@ -412,8 +413,7 @@ class Importer {
     for (const auto& [begin, end] : tests_in(scan, coefficient, rate_Hz)) {
       ImportedTest test{whole, {run, begin, end - begin}};
       daq::ScanIndex next = scan[begin];
-      if (start_ns)
-        test.record.header.start_realtime_ns = later(*start_ns, static_cast<double>(next) / rate_Hz);
+      test.record.header.start_realtime_ns = start_of(next);
       for (std::size_t i = begin; i < end; ++i) {
         if (scan[i] > next)
           test.record.gaps.push_back({next, scan[i] - next, false, daq::GapCause::kMissingScans});

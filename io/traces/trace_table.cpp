@@ -9,6 +9,7 @@
 #include <limits>
 #include <set>
 #include <span>
+#include <utility>
 
 #include "io/traces/number_file.hpp"
 #include "io/traces/trace_time.hpp"
@@ -211,8 +212,8 @@ class TableReader {
 
   /// All rows to the end of the file, or to an error.
   base::Result<void> take_rows_of(RowSplitter& splitter) {
-    // Three threads: one splits rows, one reads the cells of those before, and this one takes those before
-    // them. Each may be some pieces ahead of the next.
+    // Rows are split one piece after the other, some pieces ahead; meanwhile cells of those before are read,
+    // and this thread takes those before them.
     constexpr std::size_t kPieces = 4;
     struct Piece {
       Rows rows;
@@ -220,15 +221,29 @@ class TableReader {
       std::future<void> read;
     };
     std::array<Piece, kPieces> pieces;
-    const auto start = [&](Piece& piece, std::shared_future<void> before) {
-      piece.split = std::async([&splitter, &rows = piece.rows, before = std::move(before)] {
-                      if (before.valid()) before.get();
-                      splitter.next(rows);
-                    }).share();
-      piece.read = std::async([this, &rows = piece.rows, split = piece.split] {
-        split.get();
+    // A split may be waited for by that of another piece alone.
+    struct WaitForAll {
+      const std::array<Piece, kPieces>& pieces;
+      ~WaitForAll() {
+        for (const Piece& piece : pieces) {
+          if (piece.split.valid()) piece.split.wait();
+        }
+      }
+    } const waiting{pieces};
+    const auto start = [&](Piece& piece, const std::shared_future<void>& before) {
+      // Named, as async moves what it is given before it knows whether there is room for a thread. The one
+      // before is let go, or all would be kept.
+      const auto split = [&splitter, &rows = piece.rows,
+                          before = std::shared_future<void>{before}]() mutable {
+        if (before.valid()) std::exchange(before, {}).get();
+        splitter.next(rows);
+      };
+      piece.split = std::async(split).share();
+      const auto read = [this, &rows = piece.rows, own = piece.split] {
+        own.get();
         read_cells(rows);
-      });
+      };
+      piece.read = std::async(read);
     };
     std::shared_future<void> before;
     for (Piece& piece : pieces) {

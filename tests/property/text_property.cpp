@@ -103,7 +103,7 @@ RC_GTEST_PROP(TextProperty, JsonStaysTheSameAndEndsNoScript, ()) {
   const nlohmann::ordered_json json{{"name", text}};
   const std::string answer = io::json_text(json);
   expect_safe(answer);
-  const auto replaced = io::json_text(json);
+  const std::string replaced = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   RC_ASSERT(nlohmann::ordered_json::parse(answer) == nlohmann::ordered_json::parse(replaced));
   expect_safe(json_for_script(json));
   RC_ASSERT(json_for_script(json).find('<') == std::string::npos);

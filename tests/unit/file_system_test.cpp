@@ -156,6 +156,16 @@ TEST_F(FileSystem, WithoutLocksRecordsAreMadeAndRead) {
   }
 }
 
+TEST_F(FileSystem, CountsWithoutAGainMakeNoRecord) {
+  Record record = test::whole_record();
+  ASSERT_EQ(record.header.board.quantity, daq::RawQuantity::kCounts);
+  record.header.load_cell.reset();
+  const auto published = publish_record(record, folder_ / "b.h5");
+  ASSERT_FALSE(published);
+  EXPECT_THAT(published.error().message, HasSubstr("no gain"));
+  EXPECT_EQ(names(), std::vector<std::string>{"a.h5"});
+}
+
 TEST_F(FileSystem, WithoutLocksJournalsAreWritten) {
   disk_.flock_error = ENOLCK;
   auto journal = JournalWriter::create(folder_ / "b.journal", test::whole_record().header, disk_);

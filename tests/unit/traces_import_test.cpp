@@ -191,22 +191,63 @@ TEST_F(TraceImport, ReversedRowsStartWithTheFirstScan) {
   EXPECT_EQ(record.header.start_realtime_ns, 1'767'225'600'000'000'000);
 }
 
-// Each test of a trace starts when its own first scan was read.
-TEST_F(TraceImport, TestsOfOneTraceHaveTheirOwnStarts) {
-  // Two pulls of 30 s with a rest of 40 s between them.
-  std::string content = "Time,F\n";
+/// Rows of two pulls of 30 s at 10 scans/s, the second 40 s after the first: "2026-01-01T00:MM:SS.sZ,force".
+/// \param hours_between  more, between their clocks. \param decimals  of the seconds.
+std::vector<std::string> two_pulls(int hours_between, int decimals) {
+  std::vector<std::string> rows;
   for (int i = 0; i < 1200; ++i) {
     const bool pulled = (i >= 100 && i < 400) || (i >= 800 && i < 1100);
-    content += fmt::format("2026-01-01T00:{:02}:{:02}.{}Z,{:.4f}\n", i / 600, i / 10 % 60, i % 10,
-                           (pulled ? 0.3 : 0.0) + 1e-4 * (i * 7919 % 13));
+    const std::string seconds =
+        fmt::format("{:02}{}", i / 10 % 60, decimals > 0 ? fmt::format(".{}", i % 10) : "");
+    rows.push_back(fmt::format("2026-01-01T{:02}:{:02}:{}Z,{:.4f}\n", i < 600 ? 0 : hours_between, i / 600,
+                               seconds, (pulled ? 0.3 : 0.0) + 1e-4 * (i * 7919 % 13)));
+  }
+  return rows;
+}
+
+constexpr std::int64_t kNewYear_ns = 1'767'225'600'000'000'000;
+constexpr std::int64_t kScan_ns = 100'000'000;
+
+// Each test of a trace starts when its own first scan was read.
+TEST_F(TraceImport, TestsOfOneTraceHaveTheirOwnStarts) {
+  std::vector<std::string> rows = two_pulls(0, 1);
+  for (const bool reverse : {false, true}) {
+    request_.reverse = reverse;
+    if (reverse) std::ranges::reverse(rows);
+    const auto imported = import(fmt::format("Time,F\n{}", fmt::join(rows, "")));
+    ASSERT_TRUE(imported) << imported.error().message;
+    ASSERT_THAT(imported->tests, SizeIs(2));
+    const record::Record second = test::in_memory(imported->tests[1]);
+    EXPECT_EQ(imported->tests[0].record.header.start_realtime_ns, kNewYear_ns);
+    EXPECT_GT(second.scan.front(), 400);
+    EXPECT_EQ(second.header.start_realtime_ns, kNewYear_ns + kScan_ns * second.scan.front());
+  }
+}
+
+// A clock that shows whole seconds tells no rate; it does tell that an hour has passed.
+TEST_F(TraceImport, ATestBehindAPauseStartsByItsOwnRow) {
+  request_.rate_Hz = 10.0;
+  const auto imported = import(fmt::format("Time,F\n{}", fmt::join(two_pulls(1, 0), "")));
+  ASSERT_TRUE(imported) << imported.error().message;
+  ASSERT_THAT(imported->tests, SizeIs(2));
+  const base::ScanIndex first = test::in_memory(imported->tests[1]).scan.front();
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  const std::int64_t shown_s = first / 10 + (first < 600 ? 0 : 3600);
+  EXPECT_EQ(imported->tests[1].record.header.start_realtime_ns, kNewYear_ns + kSecond_ns * shown_s);
+}
+
+// Runs one below the other, the newest first.
+TEST_F(TraceImport, ARunOfAnEarlierDateHasItsOwnStart) {
+  std::string content = "Time,F\n";
+  for (const int day : {2, 1}) {
+    for (int i = 0; i < 200; ++i)
+      content += fmt::format("2026-01-{:02}T00:00:{:02}.{}Z,0.{}\n", day, i / 10, i % 10, 1 + i % 3);
   }
   const auto imported = import(content);
   ASSERT_TRUE(imported) << imported.error().message;
   ASSERT_THAT(imported->tests, SizeIs(2));
-  const record::Record second = test::in_memory(imported->tests[1]);
-  EXPECT_EQ(imported->tests[0].record.header.start_realtime_ns, 1'767'225'600'000'000'000);
-  EXPECT_GT(second.scan.front(), 400);
-  EXPECT_EQ(second.header.start_realtime_ns, 1'767'225'600'000'000'000 + 100'000'000 * second.scan.front());
+  EXPECT_EQ(imported->tests[0].record.header.start_realtime_ns, kNewYear_ns + 86'400 * 10 * kScan_ns);
+  EXPECT_EQ(imported->tests[1].record.header.start_realtime_ns, kNewYear_ns);
 }
 
 TEST_F(TraceImport, UnitThatChangesBetweenCellsIsRefused) {
