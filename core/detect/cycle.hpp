@@ -11,12 +11,14 @@
 namespace stickslip::detect {
 
 /// Bits of Cycle::flags. "Inside" is from this peak to the next; in the last cycle to its trough. While the
-/// test runs, the last cycle reaches to the end of the test, and one whose ring-down died away to its trough.
+/// test runs, the last cycle reaches to the end of the test; one whose ring-down has died away ends at its
+/// trough.
 enum CycleFlag : std::uint8_t {
-  kCycleHasSpike = 1U << 0U,     ///< A spike was replaced inside.
-  kCycleHasGap = 1U << 1U,       ///< Scans are missing inside.
-  kCycleIsSaturated = 1U << 2U,  ///< The converter was at a rail inside.
-  kCycleCaptured = 1U << 3U,     ///< The slip ended in sticking; not set if unknown.
+  kCycleHasSpike = 1U << 0U,  ///< A spike was replaced inside.
+  kCycleHasGap = 1U << 1U,    ///< Scans are missing inside.
+  /// The converter was at a rail inside; after the test also: the force was clipped before it or stood still.
+  kCycleIsSaturated = 1U << 2U,
+  kCycleCaptured = 1U << 3U,  ///< The slip ended in sticking; not set if unknown.
   /// The first slip of the test, or (set at the end of the test) after a hold: not representative.
   kCycleIsFirst = 1U << 4U,
 };

@@ -36,13 +36,14 @@ struct CycleFit {
 };
 
 /// Fits one slip. The speed of the belt is taken to be constant.
-/// \param points  of one slip: from the stick before it to the stick, or the free oscillation, after it.
-/// \param captured  the slip ended in sticking.
+/// \param points  of one slip: the stick before it, the slip, and what follows it, or up to its trough alone.
+/// \param captured  the model sticks again after the slip; false: its oscillation goes on.
 /// \param start   first guess of onset, S and K.
 /// \param shared  first guess of ω, γ and r.
+/// \param knowledge  prior of ω, γ and r, after its start().
 /// \param sigma   noise of one scan, > 0.
 /// \return converged = false with fewer than four points, if the first guess is not admissible (as in
-/// fit_slips()), or if the fit does not settle in 12 iterations.
+/// fit_slips()), if the fit does not settle in 12 iterations, or if the points do not determine it.
 [[nodiscard]] CycleFit fit_cycle(std::span<const CyclePoint> points, bool captured,
                                  const model::SlipParameters& start, const model::SharedParameters& shared,
                                  const SharedPosterior& knowledge, double sigma) noexcept;

@@ -1,6 +1,6 @@
 /// \file
-/// Self-check of the unloaded tester: noise, hum, spikes, saturation, zero and its drift, from unloaded
-/// scans.
+/// Self-check of the unloaded tester. Noise, hum, spikes, saturation, zero and its drift are judged from
+/// unloaded scans; the scan rate from all scans since the acquisition began.
 ///
 ///     const daq::SelfCheck check = check_idle(990, raw, calibration, 350.0);
 ///     for (const base::Finding& finding : self_check_findings(check, 22.9, 350.0)) …
