@@ -14,8 +14,8 @@ namespace stickslip::record {
 
 /// Moves an estimator's name, unchanged, from process.method, where version 0.1 wrote it ("penner-1995
 /// kinetic_cycles=10 estimator=peak"), to process.estimator. That may then be a name of version 0.1, which
-/// estimator_of() understands. Does nothing if there is none, the name is unknown, or
-/// that field is set. Readers of files call it. It can be removed once format version 2 is no longer read
+/// estimator_of() understands. Does nothing if there is none, the name is unknown, or that field is set.
+/// Readers of files call it. It can be removed once format version 2 is no longer read
 /// (kOldestFormatVersion).
 void read_estimator_of_0_1(ProcessFacts& process);
 
