@@ -330,7 +330,7 @@ class Importer {
     const RowView value = value_.part(begin, count);
     const auto run = std::make_shared<record::ScanColumns>(request_.scratch_folder);
     double rate_Hz = 0.0;
-    bool coarse = false;
+    bool each_row_counts = false;
     if (time_s_.empty()) {
       rate_Hz = *request_.rate_Hz;
       Grid grid;
@@ -345,7 +345,8 @@ class Importer {
       if (!grid) return tl::unexpected(grid.error());
       tell(*grid, begin);
       rate_Hz = grid->rate_Hz;
-      coarse = !grid->rate_checked;
+      each_row_counts =
+          !grid->rate_checked && grid->index.back() + 1 == static_cast<daq::ScanIndex>(grid->index.size());
       if (grid->uniform) {
         take_rows(*grid, value, *run);
       } else {
@@ -358,11 +359,11 @@ class Importer {
                                request_.path, count - scans, count,
                                base::one_line(dialect_.columns[columns_.value].text, 40));
     }
-    // Where the times are too coarse a row is a scan, and has the only time.
+    // Where the times are too coarse and each row counts as a scan, rows have the only times.
     return add_tests(run, rate_Hz, [&](daq::ScanIndex scan) -> std::optional<std::int64_t> {
       if (!start_ns_ || time_s_.empty()) return start_ns_;
-      const double offset_s = coarse ? time_s_[begin + static_cast<std::size_t>(scan)]
-                                     : time_s_[begin] + static_cast<double>(scan) / rate_Hz;
+      const double offset_s = each_row_counts ? time_s_[begin + static_cast<std::size_t>(scan)]
+                                              : time_s_[begin] + static_cast<double>(scan) / rate_Hz;
       return later(*start_ns_, offset_s - time_s_.front());
     });
   }

@@ -236,6 +236,27 @@ TEST_F(TraceImport, ATestBehindAPauseStartsByItsOwnRow) {
   EXPECT_EQ(imported->tests[1].record.header.start_realtime_ns, kNewYear_ns + kSecond_ns * shown_s);
 }
 
+// Times of so few digits tell missing rows but no rate: scan indices run ahead of the rows.
+TEST_F(TraceImport, ATestBehindMissingRowsStartsByItsScan) {
+  request_.rate_Hz = 7.0;
+  std::string content = "Time,F\n";
+  for (int i = 0; i < 2400; ++i) {
+    if (i > 440 && i < 1960) continue;
+    const bool pulled = (i >= 100 && i < 400) || (i >= 2000 && i < 2300);
+    const int tenths = (i * 10 + 3) / 7;
+    content += fmt::format("2026-01-01T00:{:02}:{:02}.{}Z,{:.4f}\n", tenths / 600, tenths / 10 % 60,
+                           tenths % 10, (pulled ? 0.3 : 0.0) + 1e-4 * (i * 7919 % 13));
+  }
+  const auto imported = import(content);
+  ASSERT_TRUE(imported) << imported.error().message;
+  ASSERT_THAT(imported->tests, SizeIs(2));
+  const base::ScanIndex first = test::in_memory(imported->tests[1]).scan.front();
+  EXPECT_GT(first, 440);
+  // Within the last digit of the times.
+  EXPECT_NEAR(static_cast<double>(*imported->tests[1].record.header.start_realtime_ns - kNewYear_ns),
+              1e9 / 7.0 * static_cast<double>(first), 1e8);
+}
+
 // Runs one below the other, the newest first.
 TEST_F(TraceImport, ARunOfAnEarlierDateHasItsOwnStart) {
   std::string content = "Time,F\n";
