@@ -190,7 +190,7 @@ std::string folder_text(const Named& named) {
     std::string_view what;
     std::string_view ending;
     bool tells_of_trouble;
-    std::vector<std::filesystem::path> files{};
+    std::vector<std::string> files{};
     std::uintmax_t size = 0;
   };
   std::array<Kind, 5> kinds{{{"records", ".h5", false},
@@ -202,9 +202,8 @@ std::string folder_text(const Named& named) {
   if (!std::filesystem::exists(named.record_folder, error))
     return not_had(error ? error.message() : "there is no such folder");
   const io::FilesFound found = io::find_files(named.record_folder, [](const auto&) { return true; });
-  for (const std::filesystem::path& file : found.files) {
-    Kind& kind =
-        *std::ranges::find_if(kinds, [&](const Kind& one) { return file.native().ends_with(one.ending); });
+  for (const std::string& file : found.files) {
+    Kind& kind = *std::ranges::find_if(kinds, [&](const Kind& one) { return file.ends_with(one.ending); });
     const std::uintmax_t size = std::filesystem::file_size(file, error);
     if (!error) kind.size += size;
     kind.files.push_back(file);
@@ -214,8 +213,8 @@ std::string folder_text(const Named& named) {
     text += fmt::format("{} {}, {} bytes\n", kind.files.size(), kind.what, kind.size);
     if (!kind.tells_of_trouble) continue;
     for (std::size_t i = 0; i < std::min(kind.files.size(), kMostNames); ++i)
-      text += fmt::format("  {}, {} bytes\n", kind.files[i].string(),
-                          std::filesystem::file_size(kind.files[i], error));
+      text +=
+          fmt::format("  {}, {} bytes\n", kind.files[i], std::filesystem::file_size(kind.files[i], error));
     if (kind.files.size() > kMostNames)
       text += fmt::format("  and {} more\n", kind.files.size() - kMostNames);
   }

@@ -222,7 +222,10 @@ Json json_of(const FindOptions& options, const Found& found) {
                       {"looked", file.state == catalogue::State::kUnreadable},
                       {"why", file.why}});
   }
-  return {{"records", records}, {"count", found.match_count}, {"unread", unread}, {"notices", notices}};
+  return {{"records", std::move(records)},
+          {"count", found.match_count},
+          {"unread", std::move(unread)},
+          {"notices", std::move(notices)}};
 }
 
 std::string csv_of(const FindOptions& options, const Found& found) {

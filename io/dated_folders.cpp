@@ -1,39 +1,60 @@
 #include "io/dated_folders.hpp"
 
+#include <dirent.h>
+#include <sys/stat.h>
+
 #include <algorithm>
-#include <system_error>
+#include <cerrno>
+#include <memory>
+#include <string_view>
+
+#include "core/base/wording.hpp"
 
 namespace stickslip::io {
 namespace {
 
-namespace fs = std::filesystem;
+struct CloseListing {
+  void operator()(DIR* listing) const noexcept { ::closedir(listing); }
+};
 
-void look_into(const fs::path& folder, int deeper, const std::function<bool(const fs::path&)>& wanted,
+/// No link to a folder counts as one.
+bool is_folder(DIR& listing, const dirent& entry) {
+  // Most listings tell it: no further call for each of thousands of files.
+  if (entry.d_type != DT_UNKNOWN) return entry.d_type == DT_DIR;
+  struct stat found {};
+  return ::fstatat(::dirfd(&listing), entry.d_name, &found, AT_SYMLINK_NOFOLLOW) == 0 &&
+         S_ISDIR(found.st_mode);
+}
+
+// std::filesystem splits the path of each entry into its parts, which takes longer than the listing.
+void look_into(const std::string& folder, int deeper, const std::function<bool(std::string_view)>& wanted,
                FilesFound& found) {
-  std::error_code error;
-  for (fs::directory_iterator entry{folder, error}; !error && entry != fs::directory_iterator{};
-       entry.increment(error)) {
-    std::error_code of_entry;
-    // The folder's listing tells both: no further call for each of thousands of files.
-    const bool is_folder = !entry->is_symlink(of_entry) && entry->is_directory(of_entry);
-    if (!is_folder && wanted(entry->path())) found.files.push_back(entry->path());
-    // The kernel's: only root may look into it, and no record is made there.
-    if (is_folder && deeper > 0 && entry->path().filename() != "lost+found")
-      look_into(entry->path(), deeper - 1, wanted, found);
+  const std::unique_ptr<DIR, CloseListing> listing{::opendir(folder.c_str())};
+  const std::string prefix = folder.ends_with('/') ? folder : folder + '/';
+  const auto next = [&listing] {
+    errno = 0;  // Else the end of the listing is not told from an error.
+    return ::readdir(listing.get());
+  };
+  const dirent* entry = nullptr;
+  while (listing && (entry = next()) != nullptr) {
+    const std::string_view name = entry->d_name;
+    if (name == "." || name == "..") continue;
+    if (!is_folder(*listing, *entry)) {
+      if (wanted(name)) found.files.push_back((prefix + std::string{name}));
+    } else if (deeper > 0 && name != "lost+found") {  // The kernel's: only root may look into it.
+      look_into(prefix + std::string{name}, deeper - 1, wanted, found);
+    }
   }
-  if (error && error != std::errc::no_such_file_or_directory)
-    found.unread.push_back({folder, error.message()});
+  if (errno != 0 && errno != ENOENT) found.unread.push_back({folder, base::system_message(errno)});
 }
 
 }  // namespace
 
-FilesFound find_files(const fs::path& folder, const std::function<bool(const fs::path&)>& wanted,
-                      int deepest) {
+FilesFound find_files(const std::filesystem::path& folder,
+                      const std::function<bool(std::string_view name)>& wanted, int deepest) {
   FilesFound found;
-  look_into(folder, deepest, wanted, found);
-  // By bytes: comparing paths part by part takes ten times as long.
-  std::sort(found.files.begin(), found.files.end(),
-            [](const fs::path& a, const fs::path& b) { return a.native() < b.native(); });
+  look_into(folder.native(), deepest, wanted, found);
+  std::ranges::sort(found.files);
   return found;
 }
 

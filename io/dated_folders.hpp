@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace stickslip::io {
@@ -26,14 +27,15 @@ struct UnreadFolder {
 };
 
 struct FilesFound {
-  std::vector<std::filesystem::path> files;  ///< Sorted.
-  std::vector<UnreadFolder> unread;          ///< These may hold more files.
+  std::vector<std::string> files;    ///< Paths, sorted by their bytes.
+  std::vector<UnreadFolder> unread;  ///< These may hold more files.
 };
 
 /// Finds files in a folder and in its subfolders, `deepest` levels down. A folder that does not
-/// exist counts as empty. Symbolic links to folders are not followed, and `lost+found` is skipped.
+/// exist counts as empty. \param wanted  whether a file of this name is. Symbolic links to folders are not
+/// followed, and `lost+found` is skipped.
 [[nodiscard]] FilesFound find_files(const std::filesystem::path& folder,
-                                    const std::function<bool(const std::filesystem::path&)>& wanted,
+                                    const std::function<bool(std::string_view name)>& wanted,
                                     int deepest = kDeepestRecordFolder);
 
 }  // namespace stickslip::io

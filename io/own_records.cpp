@@ -11,9 +11,10 @@ std::vector<std::filesystem::path> own_records(const std::filesystem::path& fold
   // As io/record_name.hpp names them, with the suffix of record::free_journal_path().
   static const std::regex own{R"(\d{8}T\d{6}Z-\d{4,}(-\d+)?\.h5)"};
   // recover_folder() reports folders that cannot be read.
-  std::vector<std::filesystem::path> found = find_files(folder, [](const std::filesystem::path& file) {
-                                               return std::regex_match(file.filename().string(), own);
-                                             }).files;
+  const std::vector<std::string> files = find_files(folder, [](std::string_view name) {
+                                           return std::regex_match(name.begin(), name.end(), own);
+                                         }).files;
+  std::vector<std::filesystem::path> found{files.begin(), files.end()};
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.stem() < b.stem(); });
   return found;
 }

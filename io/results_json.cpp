@@ -1,6 +1,7 @@
 #include "io/results_json.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -81,7 +82,9 @@ nlohmann::ordered_json uncertainties_json(const analysis::TestResults& results) 
 }  // namespace
 
 nlohmann::ordered_json results_json(const analysis::TestResults& results, bool with_details) {
-  nlohmann::ordered_json json;
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  constexpr std::size_t kMostMembers = 64;  // Without room it copies its members each time that it grows.
+  json.get_ref<nlohmann::ordered_json::object_t&>().reserve(kMostMembers);
   nlohmann::ordered_json details;
   json["regime"] = model::name(results.regime);
   if (!results.regime_reason.empty()) details["regime"][kReason] = results.regime_reason;
@@ -89,13 +92,13 @@ nlohmann::ordered_json results_json(const analysis::TestResults& results, bool w
   if (!results.rung_reason.empty()) details["rung"][kReason] = results.rung_reason;
   record::put_findings(results.findings, json);
   nlohmann::ordered_json diagnostics;
-  analysis::for_each_result(results,
-                            [&](const analysis::ResultName& name, const analysis::Estimate& estimate) {
-                              const std::string key{name.name};
-                              nlohmann::ordered_json detail = detail_json(name, estimate);
-                              if (!name.is_diagnostic) json[key] = detail.at("value");
-                              (name.is_diagnostic ? diagnostics : details)[key] = std::move(detail);
-                            });
+  analysis::for_each_result(
+      results, [&](const analysis::ResultName& name, const analysis::Estimate& estimate) {
+        const std::string key{name.name};
+        if (!name.is_diagnostic) json[key] = number(key, estimate);
+        if (name.is_diagnostic || with_details)
+          (name.is_diagnostic ? diagnostics : details)[key] = detail_json(name, estimate);
+      });
   if (!results.misfit_place.empty()) details["misfit"][kPlace] = results.misfit_place;
   json[kDiagnostics] = std::move(diagnostics);
   if (with_details) {

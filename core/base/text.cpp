@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/base/wording.hpp"
 
 namespace stickslip::base {
@@ -54,11 +56,18 @@ void add_shown(std::string& out, std::string_view text, const Character& charact
 }
 
 std::string shown(std::string_view text, bool lines_stay, bool colours_stay) {
+  const auto is_plain = [lines_stay](char c) {
+    return (c >= ' ' && c <= '~') || (lines_stay && (c == '\n' || c == '\t'));
+  };
   std::string out;
   out.reserve(text.size());
-  while (!text.empty()) {
+  for (;;) {
+    // All but a few characters are plain: a run of them is copied at once.
+    const auto plain = std::ranges::find_if_not(text, is_plain);
+    out.append(text.begin(), plain);
+    text.remove_prefix(static_cast<std::size_t>(plain - text.begin()));
+    if (text.empty()) return out;
     std::size_t size = colours_stay ? colour_size(text) : 0;
-    if (lines_stay && (text.front() == '\n' || text.front() == '\t')) size = 1;
     if (lines_stay && text.starts_with("\r\n")) size = 2;
     if (size > 0) {
       out += text.substr(0, size);
@@ -69,7 +78,6 @@ std::string shown(std::string_view text, bool lines_stay, bool colours_stay) {
     }
     text.remove_prefix(size);
   }
-  return out;
 }
 
 bool begins_a_formula(std::string_view text) {

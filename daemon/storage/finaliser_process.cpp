@@ -161,8 +161,8 @@ std::string loss_of(const record::Finalised& made, ExpectedScans expected) {
 }
 
 io::FilesFound journals_in(const std::filesystem::path& folder) {
-  return io::find_files(folder, [](const std::filesystem::path& file) {
-    return file.extension() == record::kJournalExtension;
+  return io::find_files(folder, [](std::string_view name) {
+    return name.size() > record::kJournalExtension.size() && name.ends_with(record::kJournalExtension);
   });
 }
 

@@ -39,7 +39,7 @@ Recovery recover_folder(const std::filesystem::path& folder, const Finalise& fin
                         daemon::EventReceiver& events) {
   Recovery worst = Recovery::kDone;
   const io::FilesFound journals = journals_in(folder);
-  for (const std::filesystem::path& journal : journals.files)
+  for (const std::string& journal : journals.files)
     worst = std::max(worst, recover_journal(journal, finalise, events));
   for (const auto& [unread, why] : journals.unread) {
     events.folder_unread(unread, why);
