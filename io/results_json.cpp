@@ -23,6 +23,13 @@ constexpr const char* kDiagnostics = "diagnostics";
 constexpr const char* kReason = "reason";
 constexpr const char* kPlace = "place";
 
+/// Empty, with room: without, an object copies its members each time that it grows.
+nlohmann::ordered_json object_for(std::size_t count) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  json.get_ref<nlohmann::ordered_json::object_t&>().reserve(count);
+  return json;
+}
+
 /// The value as JSON. A result whose name ends in _count becomes an integer.
 nlohmann::ordered_json number(const std::string& name, const analysis::Estimate& estimate) {
   constexpr std::string_view kCount = "_count";
@@ -33,7 +40,8 @@ nlohmann::ordered_json number(const std::string& name, const analysis::Estimate&
 
 /// {"value": …, "unit": …, "standard_error": …, …}
 nlohmann::ordered_json detail_json(const analysis::ResultName& name, const analysis::Estimate& estimate) {
-  nlohmann::ordered_json detail;
+  constexpr std::size_t kMembers = 6;
+  nlohmann::ordered_json detail = object_for(kMembers);
   detail["value"] = number(std::string{name.name}, estimate);
   detail["unit"] = name.unit;
   if (estimate.standard_error) detail[kStandardError] = *estimate.standard_error;
@@ -67,7 +75,7 @@ analysis::Estimate estimate_of(const nlohmann::ordered_json& detail) {
 
 /// {"delta_mu": {"standard_error": …, "systematic_uncertainty": …}, …}, of the quantities that have errors.
 nlohmann::ordered_json uncertainties_json(const analysis::TestResults& results) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  nlohmann::ordered_json json = object_for(analysis::quantities().size());
   for (const analysis::Quantity& quantity : analysis::quantities()) {
     const analysis::Estimate& estimate = results.*quantity.estimate;
     if (!estimate.value) continue;
@@ -82,9 +90,8 @@ nlohmann::ordered_json uncertainties_json(const analysis::TestResults& results) 
 }  // namespace
 
 nlohmann::ordered_json results_json(const analysis::TestResults& results, bool with_details) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::object();
-  constexpr std::size_t kMostMembers = 64;  // Without room it copies its members each time that it grows.
-  json.get_ref<nlohmann::ordered_json::object_t&>().reserve(kMostMembers);
+  constexpr std::size_t kMembers = 64;
+  nlohmann::ordered_json json = object_for(kMembers);
   nlohmann::ordered_json details;
   json["regime"] = model::name(results.regime);
   if (!results.regime_reason.empty()) details["regime"][kReason] = results.regime_reason;

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <future>
-#include <iterator>
 #include <optional>
 #include <span>
 #include <string>
@@ -69,12 +68,19 @@ class Looker {
   base::Descriptor folder_;
 };
 
-std::vector<Look> look_at_each(std::span<const std::string> paths) {
+struct Seen {
+  io::FilesFound found;
+  std::vector<Look> looks;  ///< One for each file.
+};
+
+Seen look_at_records(const fs::path& folder) {
+  Seen seen{.found = io::find_files(
+                folder, [](std::string_view name) { return name.ends_with(".h5"); }, kDeepestFolder),
+            .looks = {}};
   Looker looker;
-  std::vector<Look> looks;
-  looks.reserve(paths.size());
-  for (const std::string& path : paths) looks.push_back(looker.look_at(path));
-  return looks;
+  seen.looks.reserve(seen.found.files.size());
+  for (const std::string& path : seen.found.files) seen.looks.push_back(looker.look_at(path));
+  return seen;
 }
 
 /// Brings an index up to date with a folder.
@@ -83,21 +89,10 @@ class Follower {
   Follower(Index& index, const fs::path& folder, const Progress& progress)
       : index_(index), folder_(folder), progress_(progress) {}
 
-  void follow(Found& found) {
-    // On two processors where there are two: of thousands of files this is most of the time of a search.
-    const auto list = [this] {
-      return io::find_files(
-          folder_, [](std::string_view name) { return name.ends_with(".h5"); }, kDeepestFolder);
-    };
-    std::future<io::FilesFound> listing = std::async(list);
-    const std::vector<KnownFile> known = index_.files();
-    io::FilesFound files = listing.get();
-    const std::span<const std::string> paths{files.files};
-    const auto look_at_rest = [rest = paths.subspan(paths.size() / 2)] { return look_at_each(rest); };
-    std::future<std::vector<Look>> looking = std::async(look_at_rest);
-    std::vector<Look> looks = look_at_each(paths.first(paths.size() / 2));
-    std::ranges::move(looking.get(), std::back_inserter(looks));
-    found.unread_folders = std::move(files.unread);
+  /// \param known  what the index held. \return whether it changed.
+  bool follow(const std::vector<KnownFile>& known, const Seen& seen, Found& found) {
+    const std::vector<std::string>& paths = seen.found.files;
+    found.unread_folders = seen.found.unread;
     const std::size_t prefix = (folder_ / "").native().size();
     std::vector<Pending> pending;
     std::vector<UnreadFile> refused;
@@ -107,7 +102,7 @@ class Follower {
       std::string file = paths[i].substr(prefix);
       for (; next != known.end() && next->file < file; ++next) gone.push_back(next->file);
       const KnownFile* const was = next != known.end() && next->file == file ? &*next++ : nullptr;
-      const Look& look = looks[i];
+      const Look& look = seen.looks[i];
       if (look.gone()) {
         if (was != nullptr) gone.push_back(file);
         continue;
@@ -130,6 +125,7 @@ class Follower {
     }
     for (std::size_t first = 0; first < pending.size(); first += kBatch)
       read(pending, first, std::min(pending.size(), first + kBatch));
+    return !pending.empty() || !refused.empty() || !gone.empty();
   }
 
  private:
@@ -174,12 +170,15 @@ class Follower {
 
 void follow_and_find(const std::string& index_path, const fs::path& folder, const Query& query,
                      const Progress& progress, Found& found) {
+  const auto look = [&folder] { return look_at_records(folder); };
+  std::future<Seen> looking = std::async(look);
   Index index{index_path};
-  Follower{index, folder, progress}.follow(found);
-  found.match_count = index.count(query);
-  found.entries = index.find(query, found.match_count);
-  // Another search may have changed the index in between.
-  found.match_count = query.most ? std::max(found.match_count, found.entries.size()) : found.entries.size();
+  const std::vector<KnownFile> known = index.files();
+  // While the files are looked at, which takes as long: most searches find none changed.
+  Matches matches = index.find(query);
+  if (Follower{index, folder, progress}.follow(known, looking.get(), found)) matches = index.find(query);
+  found.entries = std::move(matches.entries);
+  found.match_count = matches.count;
   found.unread = index.unread();
 }
 

@@ -56,8 +56,9 @@ std::int64_t version_of_schema() {
 
 Database opened(const std::string& path) {
   Database database{path};
-  // A kill leaves a journal, from which the next program restores what was before.
-  database.run("PRAGMA foreign_keys = ON; PRAGMA synchronous = NORMAL; PRAGMA cache_size = -32000");
+  // A kill leaves a journal, from which the next program restores what was before. A search reads each page
+  // once or twice: to keep them all takes longer.
+  database.run("PRAGMA foreign_keys = ON; PRAGMA synchronous = NORMAL; PRAGMA cache_size = -1000");
   const std::int64_t version = version_of_schema();
   const auto is_current = [&] {
     Statement asked = database.prepare("PRAGMA user_version");
@@ -162,8 +163,9 @@ void read_entry(const Statement& row, Entry& entry) {
 }
 
 /// What is asked of the records that meet the conditions, with the values to bind.
-Condition chosen(const std::string& columns, const Query& query) {
-  Condition all{fmt::format("SELECT {} FROM record JOIN file USING(id) WHERE 1", columns), {}};
+/// \param sql  "SELECT … FROM …".
+Condition chosen(const std::string& sql, const Query& query) {
+  Condition all{sql + " WHERE 1", {}};
   for (const Condition& condition : query.conditions) {
     all.sql += " AND (" + condition.sql + ")";
     all.values.insert(all.values.end(), condition.values.begin(), condition.values.end());
@@ -238,27 +240,30 @@ void Index::put_unread(const UnreadFile& file, const Signature& signature) { put
 
 void Index::remove(const std::string& file) { remove_.run({Bytes{file}}); }
 
-std::vector<Entry> Index::find(const Query& query, std::size_t expected) {
+Matches Index::find(const Query& query) {
+  Matches found{.entries = {}, .count = count(query)};
   const std::string column = query.order.empty() ? "start_ns" : query.order;
   const std::string order = fmt::format(" ORDER BY nullif(\"{0}\", '') IS NULL, \"{0}\"{1}, path{1}", column,
                                         query.reversed ? " DESC" : "");
   // Which ones first: to sort whole rows takes thrice as long.
-  auto [which, values] = chosen("id", query);
+  auto [which, values] = chosen("SELECT id FROM record JOIN file USING(id)", query);
   values.emplace_back(query.most.value_or(-1));
   const std::string sql =
       fmt::format("SELECT path, {}{} FROM record JOIN file USING(id) WHERE id IN ({}{} LIMIT ?){}",
                   kFactColumns, result_columns_sql(""), which, order, order);
   Statement rows = database_.prepare(sql);
   rows.bind(values);
-  std::vector<Entry> entries;
   // An entry is large: it is made where it stays.
-  entries.reserve(query.most ? std::min(expected, static_cast<std::size_t>(*query.most)) : expected);
-  while (rows.step()) read_entry(rows, entries.emplace_back());
-  return entries;
+  found.entries.reserve(query.most ? std::min(found.count, static_cast<std::size_t>(*query.most))
+                                   : found.count);
+  while (rows.step()) read_entry(rows, found.entries.emplace_back());
+  // Another search may have changed the index in between.
+  found.count = query.most ? std::max(found.count, found.entries.size()) : found.entries.size();
+  return found;
 }
 
 std::size_t Index::count(const Query& query) {
-  const auto [sql, values] = chosen("count(*)", query);
+  const auto [sql, values] = chosen("SELECT count(*) FROM record", query);
   Statement row = database_.prepare(sql);
   row.bind(values);
   row.step();

@@ -58,6 +58,11 @@ struct Entry {
   analysis::TestResults results;  ///< Without reasons.
 };
 
+struct Matches {
+  std::vector<Entry> entries;  ///< The first Query::most.
+  std::size_t count = 0;       ///< Of all records that meet the conditions.
+};
+
 /// Functions throw SqlError.
 class Index {
  public:
@@ -72,13 +77,11 @@ class Index {
   void put_unread(const UnreadFile& file, const Signature& signature);
   void remove(const std::string& file);
 
-  /// \param expected  number of matches, for which room is made.
-  [[nodiscard]] std::vector<Entry> find(const Query& query, std::size_t expected);
-  /// Of the records that meet the conditions, however many find() gives.
-  [[nodiscard]] std::size_t count(const Query& query);
+  [[nodiscard]] Matches find(const Query& query);
   [[nodiscard]] std::vector<UnreadFile> unread();
 
  private:
+  std::size_t count(const Query& query);
   std::int64_t put_file(const UnreadFile& file, const Signature& signature);
 
   Database database_;
