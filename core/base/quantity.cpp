@@ -276,8 +276,9 @@ Result<double> parse_quantity(std::string_view text, Dimension dimension) {
 Result<EnteredQuantity> enter_quantity(std::string_view text, Dimension dimension, BareNumber bare) {
   const std::string_view number = trimmed(text);
   const Result<double> value = parse_number(number);
-  const bool accepted = bare == BareNumber::kSi || bare == BareNumber::kSiWithWarning ||
-                        (bare == BareNumber::kOnlyZero && value && *value == 0.0);
+  const bool accepted =
+      bare == BareNumber::kSi || bare == BareNumber::kSiWithWarning ||
+      (bare == BareNumber::kOnlyZero && dimension != Dimension::kTemperature && value && *value == 0.0);
   if (!value || !accepted || dimension == Dimension::kDimensionless) {
     const Result<double> parsed = parse_quantity(text, dimension);
     if (!parsed) return tl::unexpected(parsed.error());

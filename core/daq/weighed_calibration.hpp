@@ -43,8 +43,8 @@ struct WeighedPoint {
 struct WeighedCalibration {
   LoadCellFit fit;  ///< Fit of the accepted readings; without load cell if weigh() finds a fault.
   std::vector<WeighedPoint> points;  ///< In the order of the readings.
-  /// Deviation from the line and hysteresis above 0.2 % of the largest difference from the tare; none without
-  /// a load cell.
+  /// Standard deviation about the line, and hysteresis, above 0.2 % of the largest difference of an
+  /// unsaturated reading from the tare; none without a load cell.
   std::vector<base::Finding> findings;
 };
 

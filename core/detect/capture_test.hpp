@@ -34,7 +34,8 @@ inline constexpr double kDecisive = 9.210340371976184;
 /// Effort of one evaluation.
 struct Budget {
   /// Smallest |log-likelihood ratio| of interest. A ratio that is certainly smaller is not computed, which
-  /// saves most of the time; then only CaptureEvidence::known is set. 0: always compute.
+  /// saves most of the time; then only CaptureEvidence::known is set. One that is computed may be too small:
+  /// by up to 1, or by more if it exceeds this. 0: always compute, exactly.
   double decisive = 0.0;
   /// Limit of the iterations of each fit of the captured trajectory.
   int iterations = 8;

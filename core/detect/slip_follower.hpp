@@ -133,7 +133,8 @@ class SlipFollower {
   /// \param residual_sigmas  what this slip's scans leave with the slope of the rise before it as stick rate.
   /// \param before_sigmas  with the one known.
   [[nodiscard]] bool belt_changed(double residual_sigmas, double before_sigmas) noexcept;
-  /// Sets now_.evidence. \param decisive  as Budget::decisive.
+  /// Sets now_.evidence. If only another belt speed explains the scans, takes the slope of the rise as stick
+  /// rate and discards the first fit. \param decisive  as Budget::decisive.
   void test_capture(double sigma, double decisive) noexcept;
   void decide(double evidence, double now_s) noexcept;
   void schedule_next_test(double now_s) noexcept { now_.next_task_s = now_s + period_s() / kTestsPerPeriod; }
@@ -142,7 +143,8 @@ class SlipFollower {
   /// \param fall_s  from peak to trough.
   void learn_turning_points(double fall_s, double sigma) noexcept;
   void estimate_by_fit(double window_end_s, double sigma) noexcept;
-  /// \param capture_s  if it was captured.
+  /// Fills slip_ with S, K, S − K, slip speed ratio and times, and keeps the time of the capture.
+  /// \param capture_s  time of the capture, as those of Cycle; ignored if the slip was not captured.
   void take_course(const model::SlipParameters& slip, double slip_speed_ratio, double capture_s) noexcept;
   void learn_typical(double delta_mu) noexcept;
   [[nodiscard]] model::SlipParameters first_guess() const noexcept;

@@ -43,9 +43,10 @@ inline constexpr std::string_view kLot = "lot";
 /// is no such quantity, a number outside the fact's range, and a key that is unknown or has no number.
 [[nodiscard]] base::Result<double> fact_number(std::string_view key, std::string_view value);
 
-/// Reason why this pair is refused in a record, with the remedy; empty if it is accepted. A key is an ASCII
-/// letter and then ASCII letters, digits, '_', '-' and '.', at most kLongestMetadataKey in all. A value is
-/// printable UTF-8 of 1 to 200 bytes (base::name_refusal()); the number of a known fact is not checked.
+/// Reason why this pair is refused in a record, with the key in front and the remedy; empty if it is
+/// accepted. A key is an ASCII letter and then ASCII letters, digits, '_', '-' and '.', at most
+/// kLongestMetadataKey in all. A value is printable UTF-8 of 1 to 200 bytes (base::name_refusal()); the
+/// number of a known fact is not checked.
 [[nodiscard]] std::string metadata_refusal(std::string_view key, std::string_view value);
 
 /// The error of fact_number() for a fact that should have a number; empty if it has one, or if no number

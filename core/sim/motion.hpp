@@ -88,9 +88,9 @@ struct Motion {
   PaperSettings paper;            ///< Effects that vary S and K.
   bool one_way_coupling = false;  ///< The coupling cannot push: it goes slack, without force.
   std::vector<BeltSegment> belt;  ///< In the order of time, from scan 0; the belt rests after the last.
-  /// Slack of the coupling at scan 0, ≥ 0; above zero only with one_way_coupling. The sled then moves with
-  /// the belt, at the speed of the first segment, even if that has no length; with rate_and_state it is at
-  /// rest.
+  /// Slack of the coupling at scan 0, ≥ 0; above zero only with one_way_coupling. A sled with slack begins at
+  /// the speed at which the first segment begins, even if that has no length; with rate_and_state it begins
+  /// at rest, as does every sled without slack.
   double startup_slack_m = 0.0;
   std::optional<KineticDrift> kinetic_drift;
   std::optional<VelocityDependence> velocity_dependence;  ///< Only for NumericSolver.

@@ -37,7 +37,8 @@ class NumericMotion {
   [[nodiscard]] virtual SpringForce force_at(const ScanTime& instant) const = 0;
 
   /// Advances to the next interval, which starts where this one ends. It may have zero length, as after an
-  /// event. \throws std::runtime_error if CVODE fails (Cvode::step()).
+  /// event. Not to be called where known_to() is kForEver. \throws std::runtime_error if CVODE fails
+  /// (Cvode::step()); then only restart() may follow.
   virtual void advance() = 0;
 
   [[nodiscard]] virtual SolverMethod method() const = 0;

@@ -86,6 +86,7 @@ TEST(EnteredQuantity, TakesANumberAloneByTheRuleOfThePlace) {
   }
   EXPECT_FALSE(enter_quantity("0", Dimension::kMass, BareNumber::kRefused));
   EXPECT_EQ(enter_quantity("0", Dimension::kMass, BareNumber::kOnlyZero).value().value, 0.0);
+  EXPECT_FALSE(enter_quantity("0", Dimension::kTemperature, BareNumber::kOnlyZero)) << "0 K or 0 degC?";
   const auto silent = enter_quantity("1.5", Dimension::kTime, BareNumber::kSi).value();
   EXPECT_EQ(silent.value, 1.5);
   EXPECT_EQ(silent.warning, "");
