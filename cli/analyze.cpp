@@ -9,6 +9,7 @@
 #include "cli/effects.hpp"
 #include "cli/method_option.hpp"
 #include "cli/subcommands.hpp"
+#include "cli/transducer_options.hpp"
 #include "io/json_text.hpp"
 #include "io/print_text.hpp"
 #include "io/results_json.hpp"
@@ -36,7 +37,8 @@ struct AnalyzeOptions {
   std::string estimator;  ///< "turning-points" or "fit"; empty: that of each record.
   /// Of analysis::kCorrectionNames, or "nothing" alone; empty: as each record says.
   std::vector<std::string> keep;
-  bool effects = false;  ///< What each of them does, beside the results.
+  TransducerOptions transducer;  ///< Instead of that of each record.
+  bool effects = false;          ///< What each of them does, beside the results.
   bool json = false;
 };
 
@@ -93,6 +95,8 @@ base::Result<std::string> run_analyze(const AnalyzeOptions& options) {
   }
   const base::Result<std::optional<analysis::SkippedCorrections>> skipped = chosen_corrections(options.keep);
   if (!skipped) return tl::unexpected(skipped.error());
+  const base::Result<model::Transducer> transducer = stated_transducer(options.transducer);
+  if (!transducer) return tl::unexpected(transducer.error());
   estimate::SharedPrior prior;
   if (!options.tester.empty()) {
     const auto coupling = record::load_tester(options.tester);
@@ -117,6 +121,7 @@ base::Result<std::string> run_analyze(const AnalyzeOptions& options) {
           file, detect::name(*tier));
     }
     if (!options.method.empty()) process.method = record::method_text(*method);
+    if (!transducer->is_ideal()) record->header.tester.set_transducer(*transducer);
     if (*skipped) process.kept = analysis::text_of(**skipped);
     base::Result<evaluation::TesterAnalysis> analysed = evaluation::analyse_with_tester(*record, prior);
     if (!analysed) {
@@ -178,6 +183,7 @@ void add_analyze(CLI::App& app, Chosen& chosen) {
       ->type_name("WHAT")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  add_transducer_options(*command, options->transducer);
   command->add_flag("--effects", options->effects,
                     "S, K and S - K with all three taken care of, and with each kept, side by side");
   command->add_flag("--json", options->json,

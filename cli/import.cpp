@@ -15,6 +15,7 @@
 #include "cli/options.hpp"
 #include "cli/progress.hpp"
 #include "cli/subcommands.hpp"
+#include "cli/transducer_options.hpp"
 #include "io/findings_text.hpp"
 
 #include "core/base/text.hpp"
@@ -41,6 +42,7 @@ struct ImportOptions {
   std::string speed;
   std::string sled_mass;
   std::string stiffness;
+  TransducerOptions transducer;
   std::string load_cell_gain;
   std::string load_cell_zero;
   std::string count_range;
@@ -127,6 +129,9 @@ Result<traces::ImportRequest> request_of(const ImportOptions& options) {
   const auto stiffness = number_of("--stiffness", options.stiffness, Dimension::kStiffness, true);
   if (!stiffness) return tl::unexpected(stiffness.error());
   request.tester.stiffness_N_per_m = *stiffness;
+  const auto transducer = stated_transducer(options.transducer);
+  if (!transducer) return tl::unexpected(transducer.error());
+  request.tester.set_transducer(*transducer);
   const auto gain = number_of("--load-cell-gain", options.load_cell_gain, Dimension::kForcePerVoltage, false);
   if (!gain) return tl::unexpected(gain.error());
   const auto zero = number_of("--load-cell-zero", options.load_cell_zero, Dimension::kVoltage, false);
@@ -306,6 +311,7 @@ void add_import(CLI::App& app, Chosen& chosen) {
        "s, ms, us, ns, min or h; else that of the heading, else by inspection", "UNIT");
   text("--speed", options->speed, "pull speed, with unit: \"12 in/min\"", "V");
   text("--stiffness", options->stiffness, "of the coupling, with unit: \"920 N/m\"", "K");
+  add_transducer_options(*command, options->transducer);
   text("--load-cell-gain", options->load_cell_gain, "with unit: \"2 N/V\"; needed for V and counts", "GAIN");
   text("--load-cell-zero", options->load_cell_zero, "with unit: \"12 mV\"; for V and counts, default 0 V",
        "ZERO");

@@ -39,6 +39,7 @@ struct BenchConfig {
   std::optional<double> gravity_m_per_s2;
   std::optional<double> pull_speed_m_per_s;
   std::optional<double> stiffness_N_per_m;
+  model::Transducer transducer;  ///< Ideal: none is stated.
   std::optional<double> load_cell_gain_N_per_V;
   std::optional<double> load_cell_zero_V;
   std::string characterisation;  ///< Text of the file that `stickslip characterise` wrote; empty: none.

@@ -154,6 +154,16 @@ void append(const std::vector<detect::Cycle>& rows, std::size_t count, std::size
   }
 }
 
+/// The slips of a section before `count` that began from sticking.
+void append_fitted(const SlipEstimates& section, std::size_t count, base::LongColumn<FittedSlip>& fitted) {
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!section.has_window(i) || (i > 0 && section.window_of_slip[i] == section.window_of_slip[i - 1]))
+      continue;
+    const estimate::SlipWindow& window = section.windows[section.window_of_slip[i]];
+    fitted.push_back({window.first, window.end, window.captured, window.slip, section.fit.shared});
+  }
+}
+
 /// Fits the sections of a test one by one. On threads the next section, where it is likely to begin, is
 /// fitted while this one is.
 class SectionFitter {
@@ -224,6 +234,7 @@ TestEstimates estimate_in_sections(const estimate::Trace& trace, const base::Lon
   whole.log_likelihood_ratios = base::LongColumn<double>{settings.scratch};
   whole.cycles = base::LongColumn<detect::Cycle>{settings.scratch};
   whole.onset_errors_s = base::LongColumn<double>{settings.scratch};
+  whole.fitted = base::LongColumn<FittedSlip>{settings.scratch};
   PooledResults results;
   PooledTester testers;
   SectionFitter sections{trace, slips, sigma, prior, settings};
@@ -255,6 +266,7 @@ TestEstimates estimate_in_sections(const estimate::Trace& trace, const base::Lon
               : base::kNaN);
     }
     last_capture_s = rows[count - 1].capture_time_s;
+    if (settings.keep_fitted && estimates.fit.converged) append_fitted(estimates, count, whole.fitted);
     const auto& ratios = estimates.log_likelihood_ratios;
     for (std::size_t i = 0; i < std::min(count, ratios.size()); ++i) {
       whole.log_likelihood_ratios.push_back(ratios[i]);

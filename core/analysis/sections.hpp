@@ -17,6 +17,7 @@
 #include "core/detect/fall_finder.hpp"
 #include "core/estimate/shared_prior.hpp"
 #include "core/estimate/trace.hpp"
+#include "core/model/slip_model.hpp"
 #include "core/model/tester.hpp"
 
 namespace stickslip::analysis {
@@ -24,6 +25,15 @@ namespace stickslip::analysis {
 /// Most slips of a section; they share ω, γ and stick rate. From so many slips, a minute of stick-slip, the
 /// shared parameters are ten times more precise than those of each slip, which would gain nothing from more.
 inline constexpr std::size_t kMostSlipsTogether = 1024;
+
+/// A slip as fitted: what SlipModel needs, for the scans [first, end) of the trace.
+struct FittedSlip {
+  std::size_t first = 0;
+  std::size_t end = 0;
+  bool captured = false;
+  model::SlipParameters slip;
+  model::SharedParameters shared;
+};
 
 /// Combined estimates of all sections.
 struct TestEstimates {
@@ -33,7 +43,9 @@ struct TestEstimates {
   base::LongColumn<double> log_likelihood_ratios;  ///< Captured over free, one fewer than slips; 0: unknown.
   base::LongColumn<detect::Cycle> cycles;          ///< One for each slip, as from cycle_table().
   base::LongColumn<double> onset_errors_s;         ///< Standard error of each onset; NaN if unknown.
-  std::int64_t captured = 0;                       ///< Slips that ended in sticking.
+  base::LongColumn<FittedSlip>
+      fitted;                 ///< One for each onset from sticking; empty unless settings.keep_fitted.
+  std::int64_t captured = 0;  ///< Slips that ended in sticking.
   /// The model describes each section, S is not clearly below K, and, if slips stick, S − K exceeds its
   /// standard error.
   bool model_describes = true;
@@ -50,6 +62,7 @@ struct SectionSettings {
   /// Most slips of a section, > 2. Where the pull speed changes, all slips are one section whatever this is.
   std::size_t most = kMostSlipsTogether;
   bool first_counts = false;  ///< Means include the first slip of the test and those after a hold.
+  bool keep_fitted = false;   ///< Fills TestEstimates::fitted.
   bool on_threads = false;    ///< Fits the next section beside this one; the estimates are the same.
 };
 

@@ -22,6 +22,7 @@
 #include "core/analysis/slack.hpp"
 #include "core/analysis/slip_list.hpp"
 #include "core/analysis/traditional.hpp"
+#include "core/analysis/transducer_correction.hpp"
 #include "core/base/contract.hpp"
 #include "core/base/nan.hpp"
 #include "core/detect/regime_rule.hpp"
@@ -484,6 +485,7 @@ base::LongColumn<detect::LiveCycle> TestAnalysis::detected(const detect::LiveSet
 SectionSettings TestAnalysis::section_settings() const {
   return {.scratch = settings_.scratch_folder,
           .first_counts = settings_.skipped.first_slip,
+          .keep_fitted = !settings_.tester.transducer.is_ideal(),
           .on_threads = !settings_.live};
 }
 
@@ -496,6 +498,9 @@ TestEstimates TestAnalysis::estimate(estimate::Trace& trace, const base::LongCol
     return estimate_in_sections(trace, slips, sigma, prior, settings_.tester, section_settings());
   };
   TestEstimates alone = estimates({});
+  if (!settings_.tester.transducer.is_ideal()) {
+    alone = without_transducer(trace, slips, sigma, std::move(alone));
+  }
   if (alone.model_describes) tester_ = alone.tester;
   if (!alone.model_describes || (alone.misfit.is_significant() && trace.belt.is_constant())) not_enough();
   const auto held = [&](const estimate::SharedPrior& prior) {
@@ -523,6 +528,27 @@ TestEstimates TestAnalysis::estimate(estimate::Trace& trace, const base::LongCol
   if (!tester_check_->used() || !with.model_describes) return alone;
   if (tester_check_->probability < kSlopeLevel) add_distance(alone.results, with.results);
   return with;
+}
+
+TestEstimates TestAnalysis::without_transducer(estimate::Trace& trace,
+                                               const base::LongColumn<detect::Fall>& slips, double sigma,
+                                               TestEstimates seen) const {
+  const ThroughTransducer through{settings_.tester.transducer, 1.0 / settings_.scan_rate_Hz,
+                                  settings_.scratch_folder};
+  const auto fit = [&](const estimate::Trace& of, const base::LongColumn<detect::Fall>& own) {
+    return estimate_in_sections(of, own, sigma, {}, settings_.tester, section_settings());
+  };
+  std::optional<TestEstimates> found =
+      through.estimate(trace, seen, [&](const estimate::Trace& of) { return fit(of, slips); });
+  if (!found || !found->model_describes) return seen;
+  // What one section tells of the errors holds for all.
+  base::LongColumn<detect::Fall> own{settings_.scratch_folder};
+  for (std::size_t i = 0; i < std::min(slips.size(), ThroughTransducer::kMostSlipsOfErrors); ++i)
+    own.push_back(slips[i]);
+  const auto fit_own = [&](const estimate::Trace& of) { return fit(of, own); };
+  if (!through.widen_errors(trace, *found, sigma, fit_own)) return seen;
+  trace.value = through.force(trace, *found);
+  return *std::move(found);
 }
 
 Estimate TestAnalysis::mu_slope(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,

@@ -159,6 +159,11 @@ class TestAnalysis {
   /// \param not_enough  called as soon as the fit is likely to need turning points beside it.
   [[nodiscard]] TestEstimates estimate(estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
                                        double sigma, const std::function<void()>& not_enough);
+  /// Estimates from the trace less what the transducer adds to the slips, and the trace without it; where
+  /// that does not settle, `seen` and the trace as it was. \param seen  from the trace as it is.
+  [[nodiscard]] TestEstimates without_transducer(estimate::Trace& trace,
+                                                 const base::LongColumn<detect::Fall>& slips, double sigma,
+                                                 TestEstimates seen) const;
   /// Estimates from cycles with turning points. \param reason  why no results of a fit are there.
   [[nodiscard]] TestEstimates by_turning_points(const estimate::Trace& trace,
                                                 const base::LongColumn<detect::Fall>& slips,

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/model/pull_speed.hpp"
+#include "core/model/transducer.hpp"
 
 namespace stickslip::model {
 
@@ -23,6 +24,7 @@ struct Tester {
   /// Pull speed over time, as planned; nullopt: that of the method, else constant. What a speed channel
   /// measures counts before it.
   std::optional<PullSpeed> speed_course;
+  Transducer transducer;  ///< Ideal if unknown.
 
   [[nodiscard]] double normal_load_N() const noexcept { return sled_mass_kg * gravity_m_per_s2; }
 };

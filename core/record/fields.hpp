@@ -40,6 +40,13 @@ void for_each_field(Fields& fields, Visitor&& visit) {
   visit(FieldName{"pull_speed", "m/s", "nominal pull speed [m/s]"}, fields.pull_speed_m_per_s);
   visit(FieldName{"stiffness", "N/m", "stiffness of the coupling [N/m]"}, fields.stiffness_N_per_m);
   visit(FieldName{"speed_course", "", ""}, fields.speed_course);
+  visit(FieldName{"load_cell_frequency", "Hz", "natural frequency of the load cell [Hz]"},
+        fields.load_cell_frequency_Hz);
+  visit(FieldName{"load_cell_damping", "1", "damping of the load cell over the critical one [1]"},
+        fields.load_cell_damping);
+  visit(FieldName{"anti_alias", "Hz", "corner of the Butterworth filter before the converter [Hz]"},
+        fields.anti_alias_Hz);
+  visit(FieldName{"anti_alias_order", "1", "order of that filter [1]"}, fields.anti_alias_order);
 }
 
 template <FieldsOf<CalibrationFacts> Fields, typename Visitor>

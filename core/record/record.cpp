@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -44,8 +45,23 @@ std::optional<Status> status_from_name(std::string_view text) noexcept {
 }
 
 TesterFacts TesterFacts::of(const model::Tester& tester) {
-  return {tester.sled_mass_kg, tester.gravity_m_per_s2, tester.pull_speed_m_per_s, tester.stiffness_N_per_m,
-          tester.speed_course ? tester.speed_course->text() : std::string{}};
+  TesterFacts facts;
+  facts.sled_mass_kg = tester.sled_mass_kg;
+  facts.gravity_m_per_s2 = tester.gravity_m_per_s2;
+  facts.pull_speed_m_per_s = tester.pull_speed_m_per_s;
+  facts.stiffness_N_per_m = tester.stiffness_N_per_m;
+  if (tester.speed_course) facts.speed_course = tester.speed_course->text();
+  facts.set_transducer(tester.transducer);
+  return facts;
+}
+
+void TesterFacts::set_transducer(const model::Transducer& transducer) {
+  load_cell_frequency_Hz = transducer.load_cell_frequency_Hz;
+  load_cell_damping =
+      transducer.load_cell_frequency_Hz ? std::optional{transducer.load_cell_damping} : std::nullopt;
+  anti_alias_Hz = transducer.anti_alias_Hz;
+  anti_alias_order =
+      transducer.anti_alias_Hz ? std::optional<std::int64_t>{transducer.anti_alias_order} : std::nullopt;
 }
 
 model::Tester TesterFacts::tester() const {
@@ -55,6 +71,11 @@ model::Tester TesterFacts::tester() const {
   tester.pull_speed_m_per_s = pull_speed_m_per_s;
   tester.stiffness_N_per_m = stiffness_N_per_m;
   tester.speed_course = model::PullSpeed::parse(speed_course);
+  const model::Transducer stated{load_cell_frequency_Hz,
+                                 load_cell_damping.value_or(model::kTypicalCellDamping), anti_alias_Hz,
+                                 static_cast<int>(std::clamp<std::int64_t>(
+                                     anti_alias_order.value_or(model::kTypicalFilterOrder), 0, 1000))};
+  if (stated.is_valid()) tester.transducer = stated;
   return tester;
 }
 

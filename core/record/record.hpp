@@ -53,10 +53,17 @@ struct TesterFacts {
   std::optional<double> pull_speed_m_per_s;
   std::optional<double> stiffness_N_per_m;
   std::string speed_course;  ///< model::PullSpeed::text(); empty for a constant speed.
+  // As model::Transducer; all absent if it is not known.
+  std::optional<double> load_cell_frequency_Hz;
+  std::optional<double> load_cell_damping;
+  std::optional<double> anti_alias_Hz;
+  std::optional<std::int64_t> anti_alias_order;
 
   [[nodiscard]] static TesterFacts of(const model::Tester& tester);
+  void set_transducer(const model::Transducer& transducer);
   /// Conversion. An absent mass or gravity becomes model::Tester's default; absent speed and stiffness stay
-  /// absent, as does a course that cannot be parsed.
+  /// absent, as does a course that cannot be parsed. A transducer whose numbers are out of range counts as
+  /// not known.
   [[nodiscard]] model::Tester tester() const;
   bool operator==(const TesterFacts&) const = default;
 };

@@ -476,6 +476,8 @@ const char* needless_option(const ImportRequest& request) {
                           std::pair{"--sled-mass", request.tester.sled_mass_kg.has_value()},
                           std::pair{"--speed", request.tester.pull_speed_m_per_s.has_value()},
                           std::pair{"--stiffness", request.tester.stiffness_N_per_m.has_value()},
+                          std::pair{"--load-cell-frequency", request.tester.load_cell_frequency_Hz.has_value()},
+                          std::pair{"--anti-alias", request.tester.anti_alias_Hz.has_value()},
                           std::pair{"--count-range", request.counts.has_value()},
                           std::pair{"--load-cell-gain", request.load_cell.has_value()},
                           std::pair{"--sample", !request.sample.name.empty()},

@@ -1,0 +1,64 @@
+/// \file
+/// Fits slips that are seen through a known transducer: takes off the trace what the transducer adds to them.
+///
+///     const ThroughTransducer through{transducer, 1.0 / 350.0, scratch_folder};
+///     auto found = through.estimate(trace, seen, fit);
+///     if (found && through.widen_errors(trace, *found, sigma, fit)) trace.value = through.force(trace,
+///     *found);
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <optional>
+
+#include "core/analysis/sections.hpp"
+#include "core/base/long_column.hpp"
+#include "core/estimate/trace.hpp"
+#include "core/model/transducer.hpp"
+
+namespace stickslip::analysis {
+
+class ThroughTransducer {
+ public:
+  /// Estimates of a trace, with TestEstimates::fitted.
+  using Fit = std::function<TestEstimates(const estimate::Trace&)>;
+  /// Slips from which the errors are learnt.
+  static constexpr std::size_t kMostSlipsOfErrors = 128;
+
+  /// \param interval_s  of scans, > 0. \param scratch_folder  of columns as long as the trace; empty: memory.
+  ThroughTransducer(const model::Transducer& transducer, double interval_s,
+                    std::filesystem::path scratch_folder)
+      : transducer_(transducer), interval_s_(interval_s), scratch_folder_(std::move(scratch_folder)) {}
+
+  /// The slips whose image through the transducer is the trace: those that are fitted to the trace less what
+  /// the transducer adds to them, found in rounds. Times stay those of the trace, in which all is late by the
+  /// transducer's lag. \param seen  fit(trace). \return nullopt if a fit does not converge or the rounds do
+  /// not settle.
+  [[nodiscard]] std::optional<TestEstimates> estimate(const estimate::Trace& trace, const TestEstimates& seen,
+                                                      const Fit& fit) const;
+
+  /// Multiplies the standard error of each result by what the transducer hides: how much more estimate()
+  /// scatters than fit() over traces of the slips found with noise, of which the random stream is always the
+  /// same. A factor is at least 1. \param found  of estimate(). \param sigma  noise of a scan. \param fit may
+  /// take the first slips alone. \return false if estimate() seldom settles with other noise: then the errors
+  /// are unknown.
+  [[nodiscard]] bool widen_errors(const estimate::Trace& trace, TestEstimates& found, double sigma,
+                                  const Fit& fit) const;
+
+  /// The trace less what the transducer adds to these slips.
+  [[nodiscard]] base::LongColumn<double> force(const estimate::Trace& trace,
+                                               const TestEstimates& found) const;
+
+ private:
+  /// What the transducer shows of the fitted slips, less these slips themselves, at each scan: 0 before the
+  /// first slip, after the last, and between slips far apart.
+  [[nodiscard]] base::LongColumn<double> distortion(const estimate::Trace& trace,
+                                                    const base::LongColumn<FittedSlip>& fitted) const;
+
+  model::Transducer transducer_;
+  double interval_s_;
+  std::filesystem::path scratch_folder_;
+};
+
+}  // namespace stickslip::analysis
