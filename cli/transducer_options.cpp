@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <optional>
 
 #include "core/base/quantity.hpp"
@@ -46,38 +47,35 @@ void add_transducer_options(CLI::App& command, TransducerOptions& options) {
        "its damping over the critical one, 0 to 0.99; default 0.05", "RATIO");
   text("--anti-alias", options.anti_alias,
        "where the Butterworth low-pass before the converter takes 3 dB, with unit: \"60 Hz\"", "F");
-  text("--anti-alias-order", options.anti_alias_order, "its order: 2, 4, 6 or 8; default 4", "N");
+  text("--anti-alias-order", options.anti_alias_order, "its order, 1 to 8; default 4", "N");
 }
 
 Result<model::Transducer> stated_transducer(const TransducerOptions& options) {
-  model::Transducer transducer;
-  const auto cell = frequency_of("--load-cell-frequency", options.load_cell_frequency);
-  if (!cell) return tl::unexpected(cell.error());
-  transducer.load_cell_frequency_Hz = *cell;
-  const auto filter = frequency_of("--anti-alias", options.anti_alias);
-  if (!filter) return tl::unexpected(filter.error());
-  transducer.anti_alias_Hz = *filter;
-  if (!options.load_cell_damping.empty() && !*cell)
+  const auto cell_Hz = frequency_of("--load-cell-frequency", options.load_cell_frequency);
+  if (!cell_Hz) return tl::unexpected(cell_Hz.error());
+  const auto filter_Hz = frequency_of("--anti-alias", options.anti_alias);
+  if (!filter_Hz) return tl::unexpected(filter_Hz.error());
+  if (!options.load_cell_damping.empty() && !*cell_Hz)
     return base::usage_error("--load-cell-damping needs --load-cell-frequency, such as \"120 Hz\"");
-  if (!options.anti_alias_order.empty() && !*filter)
+  if (!options.anti_alias_order.empty() && !*filter_Hz)
     return base::usage_error("--anti-alias-order needs --anti-alias, such as \"60 Hz\"");
   const auto damping =
-      number_of("--load-cell-damping", options.load_cell_damping, transducer.load_cell_damping);
+      number_of("--load-cell-damping", options.load_cell_damping, model::kTypicalCellDamping);
   if (!damping) return tl::unexpected(damping.error());
   if (!(*damping >= 0.0 && *damping <= model::kLargestCellDamping)) {
     return base::usage_error("--load-cell-damping {}: must be 0 to {}",
                              base::one_line(options.load_cell_damping, 40), model::kLargestCellDamping);
   }
-  transducer.load_cell_damping = *damping;
-  const auto order = number_of("--anti-alias-order", options.anti_alias_order, transducer.anti_alias_order);
+  const auto order = number_of("--anti-alias-order", options.anti_alias_order, model::kTypicalFilterOrder);
   if (!order) return tl::unexpected(order.error());
-  for (int even = model::kLowestFilterOrder; even <= model::kHighestFilterOrder; even += 2) {
-    if (*order != even) continue;
-    transducer.anti_alias_order = even;
-    return transducer;
+  if (*order != std::floor(*order) || *order < 1.0 || *order > model::AntiAlias::kHighestOrder) {
+    return base::usage_error("--anti-alias-order {}: must be a whole number of 1 to {}",
+                             base::one_line(options.anti_alias_order, 40), model::AntiAlias::kHighestOrder);
   }
-  return base::usage_error("--anti-alias-order {}: must be 2, 4, 6 or 8",
-                           base::one_line(options.anti_alias_order, 40));
+  model::Transducer transducer;
+  if (*cell_Hz) transducer.load_cell = {**cell_Hz, *damping};
+  if (*filter_Hz) transducer.anti_alias = {**filter_Hz, static_cast<int>(*order)};
+  return transducer;
 }
 
 }  // namespace stickslip::cli

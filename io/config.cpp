@@ -172,12 +172,11 @@ void read_board(Settings table, const std::filesystem::path& folder, DaemonConfi
   const std::optional<double> scan_rate_Hz = table.quantity_if_given(
       "scan_rate", Dimension::kFrequency, base::Limits::above_up_to(0.0, kFastestScanRate_Hz));
   config.board.simulated.scan_rate_Hz = scan_rate_Hz;
-  model::Transducer& transducer = config.bench.transducer;
-  transducer.anti_alias_Hz =
+  const auto anti_alias_Hz =
       table.quantity_if_given("anti_alias", Dimension::kFrequency, base::Limits::above(0.0));
-  transducer.anti_alias_order = static_cast<int>(table.integer(
-      "anti_alias_order", model::kLowestFilterOrder, model::kHighestFilterOrder, model::kTypicalFilterOrder));
-  if (transducer.anti_alias_order % 2 != 0) table.refuse("anti_alias_order", "must be even: 2, 4, 6 or 8");
+  const auto order = static_cast<int>(
+      table.integer("anti_alias_order", 1, model::AntiAlias::kHighestOrder, model::kTypicalFilterOrder));
+  if (anti_alias_Hz) config.bench.transducer.anti_alias = {*anti_alias_Hz, order};
   config.board.comedi.scan_rate_Hz = scan_rate_Hz.value_or(config.board.comedi.scan_rate_Hz);
   config.clock_speed = table.quantity("clock_speed", Dimension::kDimensionless,
                                       base::Limits::above_up_to(0.0, kFastestClock), config.clock_speed);
@@ -250,11 +249,12 @@ void read_tester(Settings table, const std::filesystem::path& folder, DaemonConf
       "pull_speed", Dimension::kSpeed, base::Limits::above_up_to(0.0, model::kFastestPull_m_per_s));
   bench.stiffness_N_per_m =
       table.quantity_if_given("stiffness", Dimension::kStiffness, base::Limits::above(0.0));
-  bench.transducer.load_cell_frequency_Hz =
+  const auto cell_frequency_Hz =
       table.quantity_if_given("load_cell_frequency", Dimension::kFrequency, base::Limits::above(0.0));
-  bench.transducer.load_cell_damping =
+  const double cell_damping =
       table.quantity("load_cell_damping", Dimension::kDimensionless,
                      base::Limits::between(0.0, model::kLargestCellDamping), model::kTypicalCellDamping);
+  if (cell_frequency_Hz) bench.transducer.load_cell = {*cell_frequency_Hz, cell_damping};
   bench.load_cell_gain_N_per_V =
       table.quantity_if_given("load_cell_gain", Dimension::kForcePerVoltage, base::Limits::any());
   if (bench.load_cell_gain_N_per_V == 0.0) table.refuse("load_cell_gain", "must not be 0");

@@ -30,9 +30,9 @@ constexpr double kMostSteps = 64.0;
 
 /// Step of the response, a whole part of the scan interval.
 double step_of(double interval_s, const model::Transducer& transducer, double omega) {
-  const double fastest =
-      2.0 * std::numbers::pi *
-      std::max(transducer.load_cell_frequency_Hz.value_or(0.0), transducer.anti_alias_Hz.value_or(0.0));
+  const double fastest = 2.0 * std::numbers::pi *
+                         std::max(transducer.load_cell ? transducer.load_cell->frequency_Hz : 0.0,
+                                  transducer.anti_alias ? transducer.anti_alias->cutoff_Hz : 0.0);
   const double steps = interval_s * std::max(omega / kSlipPhase_rad, fastest / kTransducerPhase_rad);
   return interval_s / std::clamp(std::ceil(steps), 1.0, kMostSteps);
 }

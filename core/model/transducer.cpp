@@ -8,34 +8,46 @@
 namespace stickslip::model {
 
 bool Transducer::is_valid() const noexcept {
-  const auto is_frequency = [](const std::optional<double>& frequency_Hz) {
-    return !frequency_Hz || (*frequency_Hz > 0.0 && std::isfinite(*frequency_Hz));
+  const auto is_frequency = [](double frequency_Hz) {
+    return frequency_Hz > 0.0 && std::isfinite(frequency_Hz);
   };
-  return is_frequency(load_cell_frequency_Hz) && is_frequency(anti_alias_Hz) && load_cell_damping >= 0.0 &&
-         load_cell_damping <= kLargestCellDamping && anti_alias_order >= kLowestFilterOrder &&
-         anti_alias_order <= kHighestFilterOrder && anti_alias_order % 2 == 0;
+  const bool cell_is_valid =
+      !load_cell || (is_frequency(load_cell->frequency_Hz) && load_cell->damping_ratio >= 0.0 &&
+                     load_cell->damping_ratio <= kLargestCellDamping);
+  const bool filter_is_valid =
+      !anti_alias || (is_frequency(anti_alias->cutoff_Hz) && anti_alias->order >= 1 &&
+                      anti_alias->order <= AntiAlias::kHighestOrder);
+  return cell_is_valid && filter_is_valid;
 }
 
 TransducerResponse::TransducerResponse(const Transducer& transducer, double step_s) : step_s_(step_s) {
   STICKSLIP_EXPECTS(step_s > 0.0 && transducer.is_valid());
-  if (transducer.load_cell_frequency_Hz)
-    add_section(*transducer.load_cell_frequency_Hz, transducer.load_cell_damping);
-  if (!transducer.anti_alias_Hz) return;
-  const int order = transducer.anti_alias_order;
-  // Poles on a circle [Butterworth, Exp. Wireless 7:536, 1930], in pairs.
-  for (int pair = 0; pair < order / 2; ++pair)
-    add_section(*transducer.anti_alias_Hz, std::cos(std::numbers::pi * (2 * pair + 1) / (2 * order)));
+  if (transducer.load_cell)
+    add_second_order(transducer.load_cell->frequency_Hz, transducer.load_cell->damping_ratio);
+  if (!transducer.anti_alias) return;
+  // Poles on a circle [Butterworth, Exp. Wireless 7:536, 1930]: pairs, and of an odd order a single one.
+  const auto& [cutoff_Hz, order] = *transducer.anti_alias;
+  if (order % 2 != 0) add_first_order(cutoff_Hz);
+  for (int pair = 0; pair < order / 2; ++pair) {
+    const double angle = std::numbers::pi * (2 * pair + 1 + order % 2) / (2 * order);
+    add_second_order(cutoff_Hz, std::cos(angle));
+  }
 }
 
-void TransducerResponse::add_section(double frequency_Hz, double damping) {
+void TransducerResponse::add_first_order(double frequency_Hz) {
+  const double omega = 2.0 * std::numbers::pi * frequency_Hz;
+  sections_.push_back({1.0 / omega, {{std::exp(-omega * step_s_), 0.0}, {0.0, 0.0}}});
+}
+
+void TransducerResponse::add_second_order(double frequency_Hz, double damping_ratio) {
   const double omega0 = 2.0 * std::numbers::pi * frequency_Hz;
-  const double omega = omega0 * std::sqrt(1.0 - damping * damping);
-  const double fade = std::exp(-damping * omega0 * step_s_);
+  const double omega = omega0 * std::sqrt(1.0 - damping_ratio * damping_ratio);
+  const double fade = std::exp(-damping_ratio * omega0 * step_s_);
   const double cosine = fade * std::cos(omega * step_s_);
   const double sine = fade * std::sin(omega * step_s_);
-  const double ratio = damping * omega0 / omega;
+  const double ratio = damping_ratio * omega0 / omega;
   sections_.push_back(
-      {2.0 * damping / omega0,
+      {2.0 * damping_ratio / omega0,
        {{cosine + ratio * sine, sine / omega}, {-omega0 * omega0 / omega * sine, cosine - ratio * sine}}});
 }
 

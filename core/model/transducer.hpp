@@ -12,29 +12,39 @@
 
 namespace stickslip::model {
 
-/// Lowest and highest order of the anti-alias filter; it is even.
-inline constexpr int kLowestFilterOrder = 2;
-inline constexpr int kHighestFilterOrder = 8;
+/// A load cell that swings: y″ + 2ζω y′ + ω² y = ω² (the force).
+struct LoadCellDynamics {
+  double frequency_Hz = 0.0;   ///< ω/2π, natural, without damping; > 0.
+  double damping_ratio = 0.0;  ///< ζ ≥ 0
+};
+
+/// A Butterworth low-pass; of order 1 it is an RC filter.
+struct AntiAlias {
+  static constexpr int kHighestOrder = 8;
+  double cutoff_Hz = 0.0;  ///< Where the gain is 1/√2; > 0.
+  int order = 1;           ///< 1 … kHighestOrder
+};
+
+/// Order of an anti-alias filter where it is not stated.
 inline constexpr int kTypicalFilterOrder = 4;
-/// Damping of a load cell on strain gauges, over the critical one, where it is not stated.
+/// Damping ratio of a load cell on strain gauges where it is not stated.
 inline constexpr double kTypicalCellDamping = 0.05;
-/// Largest damping that can be stated: above it a cell does not ring.
+/// Largest damping ratio of a load cell that can be stated for a fit: above it a cell does not ring.
 inline constexpr double kLargestCellDamping = 0.99;
 
-/// A transducer as its maker states it. One without frequencies is ideal: it shows the force as it is.
+/// What lies between the force and its samples, as far as it is known.
 struct Transducer {
-  std::optional<double> load_cell_frequency_Hz;    ///< Undamped natural frequency, > 0.
-  double load_cell_damping = kTypicalCellDamping;  ///< Over the critical one, 0 to kLargestCellDamping.
-  std::optional<double> anti_alias_Hz;         ///< Frequency at which a Butterworth low-pass takes 3 dB, > 0.
-  int anti_alias_order = kTypicalFilterOrder;  ///< Even, kLowestFilterOrder to kHighestFilterOrder.
+  std::optional<LoadCellDynamics> load_cell;
+  std::optional<AntiAlias> anti_alias;
 
-  [[nodiscard]] bool is_ideal() const noexcept { return !load_cell_frequency_Hz && !anti_alias_Hz; }
-  /// Whether all numbers are in these ranges.
+  /// It shows the force as it is.
+  [[nodiscard]] bool is_ideal() const noexcept { return !load_cell && !anti_alias; }
+  /// Whether frequencies, damping (at most kLargestCellDamping) and order are in their ranges.
   [[nodiscard]] bool is_valid() const noexcept;
 };
 
-/// What a transducer shows of a force that is known at equal steps and straight between them. Exact for such
-/// a force.
+/// What a transducer shows of a force that is known at equal steps and straight between them. What one
+/// section of the transducer hands to the next counts as straight, too: exact for a single section.
 class TransducerResponse {
  public:
   /// \param step_s  > 0.
@@ -50,14 +60,15 @@ class TransducerResponse {
   [[nodiscard]] double shown() const noexcept;
 
  private:
-  /// y″ + 2ζw y′ + w² y = w² x.
+  /// y″ + 2ζω y′ + ω² y = ω² x; or y′ + ω y = ω x, in which y′ counts for nothing.
   struct Section {
-    double lag_s;        ///< 2ζ/w: by so much a line is shown late.
+    double lag_s;        ///< By so much a line is shown late.
     double decay[2][2];  ///< Of (y, y′) about the line, over a step.
     double value = 0.0;
     double rate_per_s = 0.0;
   };
-  void add_section(double frequency_Hz, double damping);
+  void add_first_order(double frequency_Hz);
+  void add_second_order(double frequency_Hz, double damping_ratio);
 
   double step_s_;
   double input_ = 0.0;

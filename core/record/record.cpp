@@ -56,12 +56,16 @@ TesterFacts TesterFacts::of(const model::Tester& tester) {
 }
 
 void TesterFacts::set_transducer(const model::Transducer& transducer) {
-  load_cell_frequency_Hz = transducer.load_cell_frequency_Hz;
-  load_cell_damping =
-      transducer.load_cell_frequency_Hz ? std::optional{transducer.load_cell_damping} : std::nullopt;
-  anti_alias_Hz = transducer.anti_alias_Hz;
-  anti_alias_order =
-      transducer.anti_alias_Hz ? std::optional<std::int64_t>{transducer.anti_alias_order} : std::nullopt;
+  load_cell_frequency_Hz = load_cell_damping = anti_alias_Hz = std::nullopt;
+  anti_alias_order = std::nullopt;
+  if (transducer.load_cell) {
+    load_cell_frequency_Hz = transducer.load_cell->frequency_Hz;
+    load_cell_damping = transducer.load_cell->damping_ratio;
+  }
+  if (transducer.anti_alias) {
+    anti_alias_Hz = transducer.anti_alias->cutoff_Hz;
+    anti_alias_order = transducer.anti_alias->order;
+  }
 }
 
 model::Tester TesterFacts::tester() const {
@@ -71,10 +75,15 @@ model::Tester TesterFacts::tester() const {
   tester.pull_speed_m_per_s = pull_speed_m_per_s;
   tester.stiffness_N_per_m = stiffness_N_per_m;
   tester.speed_course = model::PullSpeed::parse(speed_course);
-  const model::Transducer stated{load_cell_frequency_Hz,
-                                 load_cell_damping.value_or(model::kTypicalCellDamping), anti_alias_Hz,
-                                 static_cast<int>(std::clamp<std::int64_t>(
-                                     anti_alias_order.value_or(model::kTypicalFilterOrder), 0, 1000))};
+  model::Transducer stated;
+  if (load_cell_frequency_Hz)
+    stated.load_cell = {*load_cell_frequency_Hz, load_cell_damping.value_or(model::kTypicalCellDamping)};
+  if (anti_alias_Hz) {
+    constexpr std::int64_t kMost = model::AntiAlias::kHighestOrder + 1;  // Out of range, as is 0.
+    stated.anti_alias = {*anti_alias_Hz,
+                         static_cast<int>(std::clamp<std::int64_t>(
+                             anti_alias_order.value_or(model::kTypicalFilterOrder), 0, kMost))};
+  }
   if (stated.is_valid()) tester.transducer = stated;
   return tester;
 }

@@ -20,10 +20,10 @@
 #include "core/model/oscillator.hpp"
 #include "core/model/pull_speed.hpp"
 #include "core/model/tester.hpp"
+#include "core/model/transducer.hpp"
 #include "core/sim/motion.hpp"
 #include "core/sim/sampling_settings.hpp"
 #include "core/sim/signal_settings.hpp"
-#include "core/sim/transducer_settings.hpp"
 
 namespace stickslip::sim {
 
@@ -118,8 +118,8 @@ struct Scene {
   std::optional<double> velocity_dependence_s_per_m;  ///< Effect `velocity_dependence`: dK/dV.
   std::optional<Stribeck> stribeck;
   std::optional<RateAndState> rate_and_state;
-  std::optional<LoadCellDynamics> load_cell_dynamics;
-  std::optional<AntiAlias> anti_alias;
+  std::optional<model::LoadCellDynamics> load_cell_dynamics;
+  std::optional<model::AntiAlias> anti_alias;
   std::optional<ClockRateError> clock_rate_error;
   std::optional<ClockJitter> clock_jitter;
   std::optional<MissingScans> missing_scans;

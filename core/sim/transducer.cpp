@@ -10,8 +10,8 @@
 
 namespace stickslip::sim {
 
-Transducer::Transducer(const std::optional<LoadCellDynamics>& load_cell,
-                       const std::optional<AntiAlias>& anti_alias, const model::Oscillator& oscillator,
+Transducer::Transducer(const std::optional<model::LoadCellDynamics>& load_cell,
+                       const std::optional<model::AntiAlias>& anti_alias, const model::Oscillator& oscillator,
                        double scan_rate_Hz)
     : oscillator_(oscillator),
       omega0_rad_per_s_(std::sqrt(oscillator.omega0_squared())),

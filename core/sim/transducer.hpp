@@ -20,8 +20,8 @@
 #include <Eigen/Core>
 
 #include "core/model/oscillator.hpp"
+#include "core/model/transducer.hpp"
 #include "core/sim/motion.hpp"
-#include "core/sim/transducer_settings.hpp"
 
 namespace stickslip::sim {
 
@@ -33,8 +33,9 @@ class Transducer final : public ForceFollower {
   /// \param oscillator    of the motion
   /// \param scan_rate_Hz  at which the force is mostly asked for: the responses over one whole period
   ///                      are computed only once.
-  Transducer(const std::optional<LoadCellDynamics>& load_cell, const std::optional<AntiAlias>& anti_alias,
-             const model::Oscillator& oscillator, double scan_rate_Hz);
+  Transducer(const std::optional<model::LoadCellDynamics>& load_cell,
+             const std::optional<model::AntiAlias>& anti_alias, const model::Oscillator& oscillator,
+             double scan_rate_Hz);
 
   /// Returns to rest without force: output() is 0.
   void restart();
@@ -45,7 +46,7 @@ class Transducer final : public ForceFollower {
   [[nodiscard]] double output() const { return state_[output_]; }
 
  private:
-  static constexpr int kMaxFilter = 2 + AntiAlias::kHighestOrder;
+  static constexpr int kMaxFilter = 2 + model::AntiAlias::kHighestOrder;
   static constexpr int kMaxForce =
       2 + ExponentialPolynomial::kPowers + ExponentialPolynomial::kDecays * ExponentialPolynomial::kOrders;
   static constexpr int kMaxSize = kMaxFilter + kMaxForce;

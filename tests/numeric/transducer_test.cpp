@@ -20,6 +20,8 @@
 namespace stickslip::sim {
 namespace {
 
+using model::AntiAlias;
+using model::LoadCellDynamics;
 using model::Oscillator;
 using ::testing::AllOf;
 using ::testing::ElementsAre;

@@ -50,9 +50,9 @@ inline sim::Scene random_scene(const std::vector<sim::Scene>& bases, std::uint64
   if (is_sloped) scene.velocity_dependence_s_per_m = uniform(-0.4, 0.4);
   if (is_chosen() && !scene.rate_and_state)
     scene.paper.scatter = sim::Scatter{.delta_mu_cv = uniform(0.0, 0.3)};
-  if (is_chosen()) scene.load_cell_dynamics = sim::LoadCellDynamics{uniform(60.0, 300.0), 0.05};
+  if (is_chosen()) scene.load_cell_dynamics = model::LoadCellDynamics{uniform(60.0, 300.0), 0.05};
   if (is_chosen())
-    scene.anti_alias = sim::AntiAlias{uniform(40.0, 170.0), std::uniform_int_distribution{1, 4}(random)};
+    scene.anti_alias = model::AntiAlias{uniform(40.0, 170.0), std::uniform_int_distribution{1, 4}(random)};
   if (is_chosen()) scene.mains_hum = sim::MainsHum{50.0, uniform(0.01, 0.2) * V, {{}}};
   if (is_chosen()) scene.drift_noise = sim::DriftNoise{uniform(0.01, 0.2) * V, 0.05, 5.0};
   if (is_chosen()) scene.spikes = sim::Spikes{uniform(0.2, 20.0), uniform(0.2, 2.0) * V};

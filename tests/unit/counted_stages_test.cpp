@@ -161,8 +161,8 @@ std::unique_ptr<MotionSolver> wrapped_solver(const Motion& motion, double scan_r
 
 // Members: `this` is the first argument of the Itanium ABI, which GCC and Clang follow.
 
-using LoadCellOption = std::optional<LoadCellDynamics>;
-using FilterOption = std::optional<AntiAlias>;
+using LoadCellOption = std::optional<model::LoadCellDynamics>;
+using FilterOption = std::optional<model::AntiAlias>;
 #define STICKSLIP_TRANSDUCER                                                                          \
   "_ZN9stickslip3sim10TransducerC1ERKSt8optionalINS0_16LoadCellDynamicsEERKS2_INS0_9AntiAliasEERKNS_" \
   "5model"                                                                                            \
