@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <hdf5.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -186,6 +187,25 @@ TEST(ReadApart, FactsAreThoseOfTheWholeRecord) {
   for (const auto& facts : {read_facts(path), reader.read(path, kEnough)}) {
     ASSERT_TRUE(facts) << facts.error().message;
     test::expect_same_record(*facts, expected);
+  }
+}
+
+TEST(ReadApart, FactsOfCountsWithoutAGainAreAnErrorThatNamesTheGain) {
+  const test::TemporaryFolder folder;
+  const auto path = folder / "1.h5";
+  ASSERT_TRUE(publish_record(test::whole_record(), path));
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  ASSERT_GE(H5Ldelete(file, "entry/instrument/calibration/gain", H5P_DEFAULT), 0);
+  H5Fclose(file);
+  ApartReader reader{LimitedChild{read_facts_for_parent}};
+  for (const auto& facts : {read_facts(path), reader.read(path, kEnough)}) {
+    ASSERT_FALSE(facts);
+    EXPECT_EQ(facts.error().kind, ErrorKind::kUsage);
+    EXPECT_FALSE(facts.error().worker_died);
+    EXPECT_EQ(facts.error().message,
+              path.string() +
+                  ": instrument/calibration/gain is missing, counts mean nothing without: take "
+                  "the record from a backup");
   }
 }
 
