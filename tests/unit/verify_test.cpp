@@ -266,6 +266,14 @@ TEST(Verify, AJournalSaysWhetherItsTestEnded) {
               HasSubstr("is the journal of a test that has not ended"));
 }
 
+TEST(Verify, AJournalHasTheFormatVersionOfItsHeader) {
+  for (const std::int64_t version : {1, 2, 3}) {
+    const fs::path journal = fs::path{STICKSLIP_SOURCE_DIR} / "tests/golden/records" /
+                             std::to_string(version) / "every-field.journal";
+    EXPECT_EQ(judge(journal).format_version, version);
+  }
+}
+
 TEST(Verify, AFlippedBitAnywhereInAJournalIsDamageATornEndIsNot) {
   const TemporaryFolder folder;
   const auto sizes = test::write_journal(folder / "a.journal", test::whole_record());
