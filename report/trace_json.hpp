@@ -8,12 +8,13 @@
 
 #include "core/base/result.hpp"
 #include "core/record/record.hpp"
+#include "daemon/types/reports.hpp"
 
 namespace stickslip::report {
 
 /// Most points of a trace on a page. A longer trace is thinned: its time is divided into half as many equal
 /// parts, and each part keeps its lowest and highest scan.
-inline constexpr std::size_t kMostPointsOnPage = 20'000;
+inline constexpr std::size_t kMostPointsOnPage = daemon::kMostTracePoints;
 
 /// {"scan_count", "rate", "thinned", "force": {"time", "value"}, "slope": {"time", "value", "unit", "limit"},
 ///  "second": {"time", "value", "unit", "name"}, "cycles": {"time", "peak", "captured"},

@@ -148,7 +148,7 @@ std::optional<model::BeltMotion> belt_from_loading(const estimate::Trace& trace,
   }
   const double K = 0.5 * (first.peak + first.trough);
   const double lag_s = 0.5 * plan.speed_m_per_s(plan.pulls().front().start_s) / (K * gravity_m_per_s2);
-  return model::BeltMotion{plan, line.start_s - lag_s};
+  return model::BeltMotion{plan, line.start_s - lag_s, trace.time_s[trace.size() - 1]};
 }
 
 }  // namespace stickslip::analysis

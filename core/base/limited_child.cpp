@@ -67,9 +67,14 @@ bool send_text(int socket, std::string_view text) {
   return send_all(socket, &size, sizeof size) && send_all(socket, text.data(), text.size());
 }
 
-std::optional<std::string> receive_text(int socket) {
+/// \return nullopt if the child is gone. Errors: kUsage if its text is longer than kLongestAnswer.
+Result<std::optional<std::string>> receive_text(int socket) {
   std::uint64_t size = 0;
   if (!receive_all(socket, &size, sizeof size)) return std::nullopt;
+  if (size > kLongestAnswer) {
+    return usage_error("cannot be read: its reader's answer has {} bytes, at most {} are taken", size,
+                       kLongestAnswer);
+  }
   std::string text(size, '\0');
   if (!receive_all(socket, text.data(), text.size())) return std::nullopt;
   return text;
@@ -254,7 +259,13 @@ Result<std::string> LimitedChild::answer(const std::function<bool()>& given_up) 
     return tl::unexpected(come.error());
   }
   const WorkLimits limits = *std::exchange(asked_, std::nullopt);
-  if (auto text = receive_text(socket_.get())) return *std::move(text);
+  auto text = receive_text(socket_.get());
+  if (!text) {
+    end();  // What it says next would be no answer.
+    text.error().worker_died = true;
+    return tl::unexpected(std::move(text).error());
+  }
+  if (*text) return **std::move(text);
   tl::unexpected<Error> died = why_it_died(limits);
   died.value().worker_died = true;
   return died;

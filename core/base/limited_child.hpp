@@ -37,6 +37,10 @@ struct WorkLimits {
 /// 350 scans/s (3 MB) takes 0.2 s and 60 MB.
 [[nodiscard]] WorkLimits limits_for_file(std::uint64_t size);
 
+/// Bytes of an answer at most: a damaged or malicious file may make the child say anything. The longest of
+/// this program, the findings about a damaged journal, have some hundred bytes for each place.
+inline constexpr std::uint64_t kLongestAnswer = 64'000'000;
+
 /// Work of the child: returns a short answer to a question and writes long data into the memory file, a
 /// descriptor of a file that is empty when the question comes. An exception ends the child.
 using ChildWork = std::function<std::string(std::string_view question, int memory_file)>;
@@ -74,7 +78,8 @@ class LimitedChild {
   /// \param given_up  called ten times a second and at each signal during the wait; true gives up the
   ///        question and ends the child. Empty: never.
   /// Errors, whose messages do not name the question: kUsage with Error::worker_died if the child died, by a
-  /// limit, an exception or a signal; kInterrupted if given up; kFailure if the system refuses.
+  /// limit, an exception or a signal, or was ended since its answer was longer than kLongestAnswer;
+  /// kInterrupted if given up; kFailure if the system refuses.
   [[nodiscard]] Result<std::string> ask(std::string_view question, const WorkLimits& limits,
                                         const std::function<bool()>& given_up = {});
 

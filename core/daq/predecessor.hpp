@@ -10,8 +10,7 @@
 namespace stickslip::daq {
 
 struct Predecessor {
-  /// The index goes on from it; absent as RateMeter::continuation(), also if scans came but none was read
-  /// promptly.
+  /// The index goes on from it; absent as RateMeter::continuation(): no scan came.
   std::optional<Continuation> continuation;
   std::optional<BoardInfo> board;  ///< The board that acquired last; absent if none did.
 };

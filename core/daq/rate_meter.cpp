@@ -13,6 +13,7 @@ ScanIndex first_scan_after(const Continuation& from, std::int64_t now_ns) noexce
 
 void RateMeter::observe(const ScanBlock& block) noexcept {
   end_ = block.end();
+  last_ = ClockAnchor{end_ - 1, block.stamp.monotonic_ns, block.stamp.realtime_ns};
   if (const auto picked = picker_.observe(block); picked && fit_.add(*picked)) latest_ = picked;
 }
 
@@ -29,7 +30,8 @@ void RateMeter::restarted() noexcept {
 }
 
 std::optional<Continuation> RateMeter::continuation() const noexcept {
-  const auto anchor = latest_ ? latest_ : picker_.best();
+  const auto prompt = latest_ ? latest_ : picker_.best();
+  const auto anchor = prompt ? prompt : last_;
   if (!anchor) return std::nullopt;
   const auto rate = fit_.estimate();
   const bool usable = rate && rate->standard_error_Hz < kUsableRelativeError * rate->rate_Hz;

@@ -41,8 +41,9 @@ class RateMeter {
 
   /// Rate over all blocks up to the last anchor; nullopt as RateFit::estimate().
   [[nodiscard]] std::optional<RateEstimate> estimate() const noexcept { return fit_.estimate(); }
-  /// State after the last block. Nullopt after construction and after restarted(), until a block was read
-  /// promptly or started() was called.
+  /// State after the last block. Its anchor is that of the most prompt read; if no block since construction
+  /// or restarted() was read promptly, the last block, however late: fewer scans then count as lost. Nullopt
+  /// before the first block or started().
   [[nodiscard]] std::optional<Continuation> continuation() const noexcept;
   /// Delay of this block's read relative to the latest anchor, the most prompt read of an earlier half
   /// second, ns; negative: earlier. Nullopt for an empty block and before the first anchor after construction
@@ -58,6 +59,7 @@ class RateMeter {
   RateFit fit_;
   ScanIndex end_ = 0;
   std::optional<ClockAnchor> latest_;
+  std::optional<ClockAnchor> last_;  ///< Of the last block, prompt or not.
 };
 
 }  // namespace stickslip::daq

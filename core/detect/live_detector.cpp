@@ -127,6 +127,7 @@ std::optional<LiveCycle> LiveDetector::close() noexcept {
 }
 
 void LiveDetector::follow_gap() noexcept {
+  flags_.mark(kCycleHasGap);
   const double last_s = positions_.time_s(static_cast<double>(positions_.count_followed() - 1));
   follower_.gap(last_s);
   usable_noise_.gap();
@@ -136,7 +137,6 @@ void LiveDetector::follow_gap() noexcept {
 
 void LiveDetector::gap(std::int64_t count) noexcept {
   noise_.gap();
-  flags_.mark(kCycleHasGap);
   // Of two gaps with so few scans in between that the despiker holds them all, the first is not waited for.
   if (positions_.is_gap_to_come() && !positions_.continues_gap()) follow_gap();
   positions_.add_gap(count);
@@ -145,6 +145,8 @@ void LiveDetector::gap(std::int64_t count) noexcept {
 std::optional<LiveCycle> LiveDetector::end() noexcept {
   const double now_s = positions_.time_s(static_cast<double>(positions_.count_followed()));
   if (follower_.is_open() && follower_.force(now_s, usable_sigma(), false)) take_decision();
+  // The despiker still holds the scans behind it, or none came.
+  if (positions_.is_gap_to_come()) flags_.mark(kCycleHasGap);
   flags_.end_test();
   state_.phase = Phase::kEnd;
   return close();

@@ -19,7 +19,8 @@ double first_time_s(double rate, double slope, double gain) noexcept {
 }
 
 /// Whether the belt stands still or has its largest speed, and takes little time from one to the other.
-bool is_one_speed(const PullSpeed& plan) noexcept {
+/// \param end_s  after the start: the last speed lasts until then.
+bool is_one_speed(const PullSpeed& plan, double end_s) noexcept {
   constexpr double kLittle = 0.1;  // Of the time at that speed.
   double changing_s = 0.0;
   double pulling_s = 0.0;
@@ -27,9 +28,9 @@ bool is_one_speed(const PullSpeed& plan) noexcept {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double v = points[i].speed_m_per_s;
     if (v != 0.0 && v != plan.largest_m_per_s()) return false;
-    if (i + 1 == points.size()) continue;
-    const double duration_s = points[i + 1].at_s - points[i].at_s;
-    if (points[i + 1].speed_m_per_s != v) {
+    const bool is_last = i + 1 == points.size();
+    const double duration_s = std::max(0.0, (is_last ? end_s : points[i + 1].at_s) - points[i].at_s);
+    if (!is_last && points[i + 1].speed_m_per_s != v) {
       changing_s += duration_s;
     } else if (v != 0.0) {
       pulling_s += duration_s;
@@ -40,9 +41,9 @@ bool is_one_speed(const PullSpeed& plan) noexcept {
 
 }  // namespace
 
-BeltMotion::BeltMotion(PullSpeed plan, double start_s)
+BeltMotion::BeltMotion(PullSpeed plan, double start_s, double end_s)
     : plan_(std::move(plan)), scale_(1.0 / plan_->largest_m_per_s()), start_s_(start_s) {
-  has_one_speed_ = is_one_speed(*plan_);
+  has_one_speed_ = is_one_speed(*plan_, end_s - start_s);
 }
 
 double BeltMotion::climbing_time_s(double r, double from_s, double gain) const noexcept {

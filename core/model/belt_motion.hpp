@@ -23,13 +23,14 @@ class BeltMotion {
  public:
   /// Constant belt, p = 1.
   BeltMotion() = default;
-  /// \param start_s  time of the trace at which the belt started.
-  BeltMotion(PullSpeed plan, double start_s);
+  /// \param start_s  time of the trace at which the belt started. \param end_s  of the trace; only
+  /// has_one_speed() asks for it. Before the last point of the plan: that point.
+  BeltMotion(PullSpeed plan, double start_s, double end_s = -kForEver);
 
   /// Has no plan. A plan of one speed is not constant: the belt rests before it.
   [[nodiscard]] bool is_constant() const noexcept { return !plan_; }
   /// Whether the belt only pulls at one speed, rests, starts and stops, and its starts and stops take at most
-  /// a tenth of the time at that speed before the last point of plan(). True if is_constant().
+  /// a tenth of the time at that speed until the end of the trace. True if is_constant().
   [[nodiscard]] bool has_one_speed() const noexcept { return has_one_speed_; }
   /// The speed, planned or measured, over the time since start_s(). Requires !is_constant().
   [[nodiscard]] const PullSpeed& plan() const noexcept { return *plan_; }

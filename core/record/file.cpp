@@ -82,8 +82,13 @@ base::Result<void> make_folders(const std::filesystem::path& folder, const FileC
   if (folder.empty() || std::filesystem::is_directory(folder, ignored)) return {};
   if (auto made = make_folders(folder.parent_path(), calls); !made) return made;
   constexpr mode_t kMode = 0755;
-  if (calls.mkdir(folder.c_str(), kMode) != 0 && errno != EEXIST)
-    return base::failure("{}: cannot be made: {}", folder.string(), system_message(errno));
+  if (calls.mkdir(folder.c_str(), kMode) != 0) {
+    if (errno != EEXIST)
+      return base::failure("{}: cannot be made: {}", folder.string(), system_message(errno));
+    // Another program may have made it meanwhile.
+    if (!std::filesystem::is_directory(folder, ignored))
+      return base::failure("{}: is no folder: move it away", folder.string());
+  }
   return sync_folder(folder_of(folder), calls);
 }
 

@@ -111,6 +111,7 @@ struct EntryPlace {
 /// Content of a journal: all complete and valid entries. Cycles and events are in the order of the file, all
 /// others in the order of their scans. If the journal has an end, cycles and spikes are the end's.
 struct JournalReading {
+  std::int64_t format_version = kFormatVersion;  ///< The header's.
   /// With JournalScans::kCount its scan, raw, second and true_coefficient are empty. Scans missing between
   /// two runs without a gap entry become gaps with the cause damaged, or unknown if every byte was readable.
   Record record;

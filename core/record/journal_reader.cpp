@@ -233,7 +233,9 @@ void keep_scans(const std::filesystem::path& path, JournalReading& reading, cons
 }
 
 /// The header, wherever it stands: first, unless a disk has swapped pages.
-base::Result<RecordHeader> find_header(const std::filesystem::path& path, const FileCalls& calls) {
+/// \param format_version  takes the header's.
+base::Result<RecordHeader> find_header(const std::filesystem::path& path, const FileCalls& calls,
+                                       std::int64_t& format_version) {
   auto entries = JournalEntries::open(path, calls);
   if (!entries) return tl::unexpected(entries.error());
   std::uint64_t others = 0;
@@ -243,7 +245,7 @@ base::Result<RecordHeader> find_header(const std::filesystem::path& path, const 
       continue;
     }
     try {
-      return header_from_json(text_of(*entry));
+      return header_from_json(text_of(*entry), &format_version);
     } catch (const std::exception& error) {
       return base::usage_error("{}: is no journal of this program: {}", path.string(),
                                base::reason_of(error));
@@ -284,12 +286,12 @@ std::string JournalReading::why_unread() const {
 
 base::Result<JournalReading> read_journal(const std::filesystem::path& path, JournalScans scans,
                                           const FileCalls& calls) {
-  auto header = find_header(path, calls);
+  JournalReading reading;
+  auto header = find_header(path, calls, reading.format_version);
   if (!header) return tl::unexpected(header.error());
   auto entries = JournalEntries::open(path, calls);
   if (!entries) return tl::unexpected(entries.error());
 
-  JournalReading reading;
   reading.record.header = *std::move(header);
   reading.file_size = entries->file_size();
   Content content{reading};

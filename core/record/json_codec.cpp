@@ -58,16 +58,16 @@ std::string header_to_json(const RecordHeader& header) {
   return dump(object);
 }
 
-RecordHeader header_from_json(std::string_view text) {
+RecordHeader header_from_json(std::string_view text, std::int64_t* format_version) {
   const Json object = Json::parse(text);
   if (object.at("format") != kFormat) {
     throw std::invalid_argument(
         fmt::format("format {}, this program reads {}", object.at("format").dump(), kFormat));
   }
-  if (const std::string refusal = version_refusal(object.at("format_version").get<std::int64_t>());
-      !refusal.empty()) {
+  const auto version = object.at("format_version").get<std::int64_t>();
+  if (const std::string refusal = version_refusal(version); !refusal.empty())
     throw std::invalid_argument(refusal);
-  }
+  if (format_version) *format_version = version;
   RecordHeader header;
   const Json& board = object.at("board");
   for_each_name_field(header.board, taker(board));

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,7 +29,8 @@ void append_end_bytes(const EndRecord& end, std::vector<std::byte>& bytes);
 // older versions, and ignore unknown keys. \throws std::exception, with the reason in what(), if a value is
 // missing or makes no sense.
 
-[[nodiscard]] RecordHeader header_from_json(std::string_view text);
+/// \param format_version  takes the version that the text names, unless it is null.
+[[nodiscard]] RecordHeader header_from_json(std::string_view text, std::int64_t* format_version = nullptr);
 [[nodiscard]] daq::Gap gap_from_json(std::string_view text);
 [[nodiscard]] detect::Cycle cycle_from_json(std::string_view text);
 [[nodiscard]] Event event_from_json(std::string_view text);

@@ -178,6 +178,18 @@ model::Mode mode_of(double number) {
   throw std::invalid_argument(fmt::format("unknown mode {}", number));
 }
 
+void read_true_tables(const Json& truth, TableReader& table, model::TestTruth& tables) {
+  for (std::size_t left = rows_told(truth, "mode_count", table); left > 0; --left) {
+    tables.modes.push_back({table.next(), table.next(), mode_of(table.next())});  // Braces keep the order.
+  }
+  for (std::size_t left = rows_told(truth, "cycle_count", table); left > 0; --left) {
+    model::TrueCycle cycle;
+    for_each_true_cycle_column([&](const FieldName&, auto member) { cycle.*member = table.next(); });
+    tables.cycles.push_back(cycle);
+  }
+}
+
+/// A newer program appends its columns behind those that this one knows, which are skipped.
 /// \param object  of the end.
 void read_tables(const Json& object, TableReader table, EndRecord& end) {
   const auto columns = object.value("cycle_columns", kFirstCycleColumns);
@@ -187,17 +199,14 @@ void read_tables(const Json& object, TableReader table, EndRecord& end) {
     for_each_cycle_column([&](const FieldName&, auto member) {
       if (column++ < columns) cycle.*member = table.next_as<std::decay_t<decltype(cycle.*member)>>();
     });
+    for (; column < columns; ++column) static_cast<void>(table.next());
     end.cycles.push_back(cycle);
   }
-  if (!end.truth) return;
-  for (std::size_t left = rows_told(object.at("truth"), "mode_count", table); left > 0; --left) {
-    end.truth->modes.push_back(
-        {table.next(), table.next(), mode_of(table.next())});  // Braces keep the order.
-  }
-  for (std::size_t left = rows_told(object.at("truth"), "cycle_count", table); left > 0; --left) {
-    model::TrueCycle cycle;
-    for_each_true_cycle_column([&](const FieldName&, auto member) { cycle.*member = table.next(); });
-    end.truth->cycles.push_back(cycle);
+  if (end.truth) read_true_tables(object.at("truth"), table, *end.truth);
+  if (table.left() > 0) {
+    throw std::invalid_argument(fmt::format(
+        "tables have {} numbers more than this program knows: read it with the version that wrote it",
+        table.left()));
   }
 }
 

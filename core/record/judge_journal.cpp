@@ -38,7 +38,7 @@ void judge_journal(const std::filesystem::path& path, Verdict& verdict) {
   const auto reading = read_journal(path, JournalScans::kCount);
   if (!reading) return judge_unread(path, reading.error(), verdict);
   const Record& record = reading->record;
-  verdict.format_version = kFormatVersion;
+  verdict.format_version = reading->format_version;
   verdict.scans_present = static_cast<std::int64_t>(reading->scan_count);
   for (const UnreadBytes& bytes : reading->damaged) verdict.damage(place_of(bytes), text_of(bytes));
   if (reading->torn_end)

@@ -45,15 +45,21 @@ OpenEntry open_entry(const GivenFile& given, const std::filesystem::path& path) 
   return {std::move(file), std::move(entry)};
 }
 
+/// No journal of counts begins without it, not even the one in memory that a reader's process answers with.
+void check_gain(const RecordHeader& header) {
+  if (header.board.quantity == daq::RawQuantity::kCounts && !header.load_cell) {
+    throw HdfError(
+        "instrument/calibration/gain is missing, counts mean nothing without: take the record from a backup");
+  }
+}
+
 /// Fields without which nothing can be computed from the raw values.
 void check_facts(const Record& record) {
   const daq::BoardInfo& board = record.header.board;
   if (!(board.scan_rate_granted_Hz > 0.0) || !std::isfinite(board.scan_rate_granted_Hz)) {
     throw HdfError(fmt::format("timing/scan_rate_granted {} Hz is not positive", board.scan_rate_granted_Hz));
   }
-  if (board.quantity == daq::RawQuantity::kCounts && !record.header.load_cell) {
-    throw HdfError("instrument/calibration/gain is missing, counts mean nothing without");
-  }
+  check_gain(record.header);
   if (board.polynomial.empty())
     throw HdfError("instrument/adc/polynomial is missing, counts mean nothing without");
   if (board.quantity == daq::RawQuantity::kCounts &&
@@ -81,7 +87,9 @@ Record facts_in(hid_t entry, std::span<const std::string> only_results = {}) {
 
 Record read_facts_of(const GivenFile& given, const std::filesystem::path& path) {
   const auto [file, entry] = open_entry(given, path);
-  return facts_in(entry.get());
+  Record record = facts_in(entry.get());
+  check_gain(record.header);
+  return record;
 }
 
 Record read_whole(const GivenFile& given, const std::filesystem::path& path) {

@@ -112,6 +112,16 @@ TEST(CaptureTest, TheFirstGuessIsALowerLimitOfCaptured) {
   }
 }
 
+TEST(CaptureTest, AFirstGuessThatDoesNotSufficeIsImprovedAsAlways) {
+  for (const ModelCourse& course : {ModelCourse::captured(1.3, 2), ModelCourse::free(2.6, 3.0)}) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      const Trace trace = course.noisy(kNoise, seed);
+      EXPECT_EQ(of_first_slip(course, trace, kNoise, {.enough = 1e9}), of_first_slip(course, trace, kNoise))
+          << seed;
+    }
+  }
+}
+
 TEST(CaptureTest, SpikesThatWereNotFoundDoNotTurnTheVerdict) {
   // One scan of ten off by ten standard deviations to the same side, which is S − K/5.
   for (const bool captured : {true, false}) {

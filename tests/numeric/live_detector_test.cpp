@@ -350,5 +350,24 @@ TEST(LiveDetector, FlagsSpikesGapsAndSaturationOfTheirOwnCycleAlone) {
   }
 }
 
+// The despiker holds three scans back: a gap right behind a peak is known before the peak is followed.
+TEST(LiveDetector, AGapOnEitherSideOfAPeakIsOfTheCycleItLiesIn) {
+  const LiveScene scene;
+  LiveTrial trial{scene};
+  std::vector<double> scans;
+  while (static_cast<std::int64_t>(scans.size()) < trial.scan_count()) scans.push_back(trial.next());
+  constexpr std::size_t kSlip = 4;
+  const auto onset = static_cast<std::ptrdiff_t>(trial.slips()[kSlip].onset_s * scene.scan_rate_Hz);
+  const auto peak = std::max_element(scans.begin() + onset, scans.begin() + onset + 8) -
+                    scans.begin();  // Within 7 ms of it.
+  for (const std::ptrdiff_t first : {-4, -3, -2, -1, 1, 2, 3, 4}) {
+    LiveDetector detector{settings_of(scene, EstimatorTier::kFit, true)};
+    for (const LiveCycle& cycle : with_gaps(scene, detector, {{peak + first, 1}})) {
+      const bool is_inside = cycle.cycle.number == static_cast<std::int64_t>(first < 0 ? kSlip - 1 : kSlip);
+      EXPECT_EQ((cycle.cycle.flags & kCycleHasGap) != 0, is_inside) << first << ", " << cycle.cycle.number;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace stickslip::detect

@@ -272,6 +272,15 @@ TEST_F(FileSystem, FoldersThatCannotBeSyncedRefuseNothing) {
   }
 }
 
+TEST_F(FileSystem, AFileInPlaceOfAFolderIsNoFolder) {
+  test::write_content(folder_ / "file", "x");
+  for (const fs::path& path : {folder_ / "file", folder_ / "file" / "b"}) {
+    const auto made = make_folders(path, disk_);
+    ASSERT_FALSE(made) << path;
+    EXPECT_EQ(made.error().message, (folder_ / "file").string() + ": is no folder: move it away");
+  }
+}
+
 TEST_F(FileSystem, ADiskThatFailsIsNoFileSystemThatCannotSync) {
   for (const int error : {EIO, ENOSPC, EROFS, EDQUOT}) {
     disk_.folder_fsync_error = error;

@@ -177,6 +177,16 @@ TEST(Holds, AreKnownToTheBeltUnlessItGoesBack) {
   EXPECT_FALSE((model::BeltMotion{*ramp, 0.0}.has_one_speed()));
 }
 
+TEST(BeltMotion, HasOneSpeedWhereTheTraceGoesOnForTenTimesTheStart) {
+  const auto start = model::PullSpeed::make({{0.0, 0.0}, {0.5, 0.002}});
+  EXPECT_FALSE((model::BeltMotion{*start, 10.0}.has_one_speed()));
+  EXPECT_FALSE((model::BeltMotion{*start, 10.0, 15.4}.has_one_speed()));
+  EXPECT_TRUE((model::BeltMotion{*start, 10.0, 15.6}.has_one_speed()));
+  // A stop that lasts is no pull.
+  const auto stops = model::PullSpeed::make({{0.0, 0.0}, {0.5, 0.002}, {1.0, 0.002}, {1.0, 0.0}});
+  EXPECT_FALSE((model::BeltMotion{*stops, 10.0, 100.0}.has_one_speed()));
+}
+
 /// Six slips at each of two speeds, K of which differ by 0.01, and one after a hold.
 std::vector<RestedSlip> two_speeds() {
   std::vector<RestedSlip> slips;

@@ -6,6 +6,7 @@
 #include <random>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace stickslip::pipeline {
@@ -32,6 +33,9 @@ class Diary final : public Sink {
     gaps.push_back(gap);
     next = gap.first + gap.count;
   }
+  void bench_stays(BenchState, double duration_s, BenchTrouble trouble) override {
+    troubles.emplace_back(trouble, duration_s);
+  }
   void note(const daq::Note& note) override { notes.push_back(note.text); }
   void observed(daq::ScanIndex, std::span<const double> coefficient, const detect::LiveState&) override {
     coefficients.insert(coefficients.end(), coefficient.begin(), coefficient.end());
@@ -48,6 +52,7 @@ class Diary final : public Sink {
   std::vector<std::int32_t> codes;
   std::vector<daq::Gap> gaps;
   std::vector<TestEnd> ends;
+  std::vector<std::pair<BenchTrouble, double>> troubles;  ///< And the time in the state, s.
   std::vector<std::string> notes;
   std::vector<double> coefficients;  ///< Of all scans.
   daq::ScanIndex next = 0;
@@ -346,6 +351,23 @@ TEST_F(ProcessorTest, ANewCalibrationNeedsAnIdleBench) {
   EXPECT_EQ(armed.recalibrate({board_, {}, 2.0}, {}, "ada").refusal,
             "the bench is loading; a new calibration needs it idle");
   EXPECT_EQ(armed.calibration().normal_load_N(), 1.0);
+}
+
+// An automatic bench waits armed for as long as it takes: what is told there has its time all the same.
+TEST_F(ProcessorTest, TimeInAStateWithoutALimitIsCounted) {
+  Processor processor = make();
+  ASSERT_EQ(patience(BenchState::kArmed, settings_.automatic).trouble, BenchTrouble::kNone);
+  constexpr daq::ScanIndex kNegative = 1000;
+  for (daq::ScanIndex first = 0; first < 3 * kNegative; first += 10) {
+    daq::ScanBlock block;
+    block.first = first;
+    block.count = 10;
+    std::fill_n(block.raw.begin(), 10, first < kNegative ? 0.0 : -0.3);
+    processor.process(block, daq::GapCause::kRingFull);
+  }
+  ASSERT_EQ(diary_.troubles.size(), 1U);
+  EXPECT_EQ(diary_.troubles[0].first, BenchTrouble::kNegativeForce);
+  EXPECT_GT(diary_.troubles[0].second, 10.0);
 }
 
 }  // namespace

@@ -238,6 +238,27 @@ TEST(RateMeter, ContinuationCountsByTheMeasuredRateOnceItIsKnown) {
   EXPECT_EQ(daq::first_scan_after(*from, time_of(6999 + 351'000, 351.0)), 7000 + 351'000);
 }
 
+TEST(RateMeter, ScansThatWereNeverReadPromptlyContinueAllTheSame) {
+  RateMeter meter{kGranted_Hz};
+  for (ScanIndex first = 0; first < 700; first += 5) meter.observe(block(first, 5, 0.0, false));
+  const auto from = meter.continuation();
+  ASSERT_TRUE(from);
+  EXPECT_EQ(from->end, 700);
+  EXPECT_EQ(from->scan_rate_Hz, kGranted_Hz);
+  // By the late read fewer scans are counted as lost, never none.
+  EXPECT_EQ(from->anchor.scan, 699);
+  EXPECT_EQ(daq::first_scan_after(*from, from->anchor.monotonic_ns + 2'000'000'000), 1400);
+}
+
+TEST(RateMeter, APromptReadCountsBeforeLaterOnesThatWereNot) {
+  RateMeter meter{kGranted_Hz};
+  meter.observe(block(0, 5, 0.0));
+  meter.observe(block(5, 5, 1e9, false));
+  ASSERT_TRUE(meter.continuation());
+  EXPECT_EQ(meter.continuation()->anchor.scan, 4);
+  EXPECT_EQ(meter.continuation()->end, 10);
+}
+
 TEST(RateMeter, IndexNeverGoesBack) {
   const daq::Continuation from{500, {499, 10'000'000'000, 0}, 350.0};
   EXPECT_EQ(daq::first_scan_after(from, 10'000'000'000), 501);

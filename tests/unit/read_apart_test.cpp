@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <hdf5.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -135,6 +136,19 @@ TEST(LimitedChildTest, LimitsGrowWithTheFile) {
   EXPECT_EQ(base::limits_for_file(3'000'000).memory, 572'000'000U);
 }
 
+// A child that a malicious file has taken over may claim any size.
+TEST(LimitedChildTest, AnAnswerLongerThanTheLimitIsRefusedBeforeRoomIsMadeForIt) {
+  for (const char* claim : {R"(printf '\377\377\377\377\377\377\377\177' >&0; sleep 60)",
+                            R"(printf '\001\220\320\003\000\000\000\000' >&0; sleep 60)"}) {
+    LimitedChild child{base::ChildProgram{"/bin/sh", {"-c", claim}}};
+    const auto claimed = child.ask("how much", kEnough);
+    ASSERT_FALSE(claimed);
+    EXPECT_EQ(claimed.error().kind, ErrorKind::kUsage);
+    EXPECT_TRUE(claimed.error().worker_died);
+    EXPECT_THAT(claimed.error().message, HasSubstr("bytes, at most 64000000 are taken"));
+  }
+}
+
 TEST(ReadApart, GivesEveryFieldToTheLastBit) {
   const test::TemporaryFolder folder;
   ApartReader reader{LimitedChild{read_for_parent}};
@@ -173,6 +187,25 @@ TEST(ReadApart, FactsAreThoseOfTheWholeRecord) {
   for (const auto& facts : {read_facts(path), reader.read(path, kEnough)}) {
     ASSERT_TRUE(facts) << facts.error().message;
     test::expect_same_record(*facts, expected);
+  }
+}
+
+TEST(ReadApart, FactsOfCountsWithoutAGainAreAnErrorThatNamesTheGain) {
+  const test::TemporaryFolder folder;
+  const auto path = folder / "1.h5";
+  ASSERT_TRUE(publish_record(test::whole_record(), path));
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  ASSERT_GE(H5Ldelete(file, "entry/instrument/calibration/gain", H5P_DEFAULT), 0);
+  H5Fclose(file);
+  ApartReader reader{LimitedChild{read_facts_for_parent}};
+  for (const auto& facts : {read_facts(path), reader.read(path, kEnough)}) {
+    ASSERT_FALSE(facts);
+    EXPECT_EQ(facts.error().kind, ErrorKind::kUsage);
+    EXPECT_FALSE(facts.error().worker_died);
+    EXPECT_EQ(facts.error().message,
+              path.string() +
+                  ": instrument/calibration/gain is missing, counts mean nothing without: take "
+                  "the record from a backup");
   }
 }
 

@@ -262,6 +262,60 @@ TEST(Journal, NumbersOfTheEndThatFitNoColumnAreRefused) {
   EXPECT_EQ(tables + column * static_cast<std::ptrdiff_t>(sizeof(double)), std::ssize(bytes));
 }
 
+/// The payload of an end whose JSON says `now` instead of `then`, and whose tables have `more` numbers behind
+/// them.
+std::vector<std::byte> end_of_newer_program(const record::EndRecord& end, std::string_view then,
+                                            std::string_view now, std::span<const double> more) {
+  std::vector<std::byte> bytes;
+  record::append_end_bytes(end, bytes);
+  std::string text{reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  EXPECT_NE(text.find(then), std::string::npos);
+  text.replace(text.find(then), then.size(), now);
+  text.append(reinterpret_cast<const char*>(more.data()), more.size_bytes());
+  const auto changed = std::as_bytes(std::span{text});
+  return {changed.begin(), changed.end()};
+}
+
+TEST(Journal, ColumnsOfCyclesThatANewerProgramAppendedAreSkipped) {
+  record::EndRecord end = *test::sample_record().end;
+  end.truth.reset();
+  end.cycles.clear();
+  // The newer column of the first row is the first number of the second: as many columns, one row less.
+  end.cycles.push_back(test::sample_record().cycles[0]);
+  const detect::Cycle written = std::as_const(end).cycles[0];
+  const std::size_t columns = record::cycle_columns();
+  std::vector<double> more{7.0};
+  std::vector<std::byte> row;
+  record::append_end_bytes(end, row);
+  const std::size_t tables = row.size() - columns * sizeof(double);
+  more.resize(1 + columns + 1, 7.0);
+  std::memcpy(&more[1], row.data() + tables, columns * sizeof(double));
+  std::string then = fmt::format(R"("cycle_columns":{},"cycle_count":1)", columns);
+  std::string now = fmt::format(R"("cycle_columns":{},"cycle_count":2)", columns + 1);
+  const auto read = record::end_from_bytes(end_of_newer_program(end, then, now, more));
+  ASSERT_EQ(read.cycles.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    record::for_each_cycle_column([&](const record::FieldName& name, auto member) {
+      const auto value = static_cast<double>(std::as_const(read).cycles[i].*member);
+      const auto expected = static_cast<double>(written.*member);
+      EXPECT_EQ(std::memcmp(&value, &expected, sizeof value), 0) << name.name;
+    });
+  }
+}
+
+TEST(Journal, NumbersBehindTheKnownTablesAreNotTakenForOthers) {
+  const record::EndRecord end = *test::sample_record().end;
+  try {
+    static_cast<void>(
+        record::end_from_bytes(end_of_newer_program(end, "", "", std::vector<double>{1.0, 2.0})));
+    ADD_FAILURE() << "was read";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "tables have 2 numbers more than this program knows: read it with the version that wrote it");
+  }
+}
+
 TEST(Journal, OnlyTheWordsForInfinityAreNumbers) {
   double value = 0.0;
   record::decode(record::Json("-inf"), value);

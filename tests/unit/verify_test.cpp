@@ -161,6 +161,22 @@ Verdict after(const Change& change) {
   return judge(folder / "a.h5");
 }
 
+TEST(Verify, AColumnOfTrueSlipsWithAnotherNumberOfRowsIsDamage) {
+  for (const char* column : {"mu_s", "mu_k"}) {
+    const Verdict verdict = after([&](hid_t file) {
+      const hid_t cycles = H5Gopen2(file, "/entry/truth/cycles", H5P_DEFAULT);
+      EXPECT_GE(H5Ldelete(cycles, column, H5P_DEFAULT), 0);
+      const hsize_t rows = 7;
+      const hid_t space = H5Screate_simple(1, &rows, nullptr);
+      H5Dclose(H5Dcreate2(cycles, column, H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+      H5Sclose(space);
+      H5Gclose(cycles);
+    });
+    EXPECT_EQ(verdict.judgement, Judgement::kDamaged);
+    EXPECT_THAT(findings_of(verdict), HasSubstr(fmt::format("entry/truth: {} has 7 rows, not", column)));
+  }
+}
+
 TEST(Verify, WhatWasChangedAfterPublishingIsFound) {
   const Verdict count = after([](hid_t file) {
     const hid_t dataset = H5Dopen2(file, "/entry/process/scan_count", H5P_DEFAULT);
@@ -264,6 +280,14 @@ TEST(Verify, AJournalSaysWhetherItsTestEnded) {
   EXPECT_THAT(findings_of(ended), HasSubstr("is the journal of a test that ended"));
   EXPECT_THAT(findings_of(judge(folder / "b.journal")),
               HasSubstr("is the journal of a test that has not ended"));
+}
+
+TEST(Verify, AJournalHasTheFormatVersionOfItsHeader) {
+  for (const std::int64_t version : {1, 2, 3}) {
+    const fs::path journal = fs::path{STICKSLIP_SOURCE_DIR} / "tests/golden/records" /
+                             std::to_string(version) / "every-field.journal";
+    EXPECT_EQ(judge(journal).format_version, version);
+  }
 }
 
 TEST(Verify, AFlippedBitAnywhereInAJournalIsDamageATornEndIsNot) {
