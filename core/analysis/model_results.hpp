@@ -96,11 +96,10 @@ class Misfit {
 /// Fills mu_s, mu_k, delta_mu, omega, gamma_over_2omega, Q, Q_threshold, threshold_speed,
 /// slip_speed_ratio_threshold, amplitude and delta_mu_scatter, each with its standard error or the reason why
 /// it is absent; calls escape_results(). S and K include the drift. S, K and S − K are those of
-/// estimates.uniform, or else means over
-/// the slips that began from sticking, without those whose error of S − K exceeds the median |S − K|,
-/// unless all do. Of three or more, the first and those after a hold are left out, too, unless
-/// estimates.first_counts or no other is left. Where neighbouring slips are correlated, the standard errors
-/// of these means are those of means that wander.
+/// estimates.uniform, or else means over the slips that began from sticking, without those whose error of
+/// S − K exceeds the median |S − K|, unless all do. Of three or more, the first and those after a hold
+/// are left out, too, unless estimates.first_counts or no other is left. Where neighbouring slips are
+/// correlated, the standard errors of these means are those of means that wander.
 ///
 /// The systematic uncertainty of S and S − K is γ v/g: whether the damper's force counts at the slip onset is
 /// a convention that no trace can decide (here: spring only, [Penner 1995, (13)]). If no slip stuck again,
