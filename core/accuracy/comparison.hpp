@@ -53,9 +53,10 @@ struct MotionComparison {
 /// Called from time to time with the share of the work that is done, 0 … 1.
 using Progress = std::function<void(double done)>;
 
-/// Runs and times each method (least_time_ns()). The reference has 50 digits if the motion allows it;
-/// otherwise it is CVODE at its smallest tolerance. Its uncertainty is then the larger of its stated accuracy
-/// and the difference from a run with ten times that tolerance. A method that gives up says so in its row.
+/// Runs and times each method (least_time_ns()). The reference has 50 digits, rounded to double, if the
+/// motion allows it; its uncertainty is then that of the rounding. Otherwise it is CVODE at its smallest
+/// tolerance, and its uncertainty the larger of its stated accuracy and the difference from a run with ten
+/// times that tolerance. A method that gives up says so in its row.
 /// \throws std::runtime_error if CVODE gives up as the reference.
 [[nodiscard]] MotionComparison compare_motion(const MotionCase& motion_case,
                                               std::span<const std::unique_ptr<Method>> methods,

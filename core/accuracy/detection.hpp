@@ -23,9 +23,9 @@ namespace stickslip::accuracy {
 
 /// One test, input of the estimators, with its truth.
 struct ObservedTest {
-  analysis::AnalysisSettings settings;  ///< Rate, A/D step, tester, method.
+  analysis::AnalysisSettings settings;  ///< Rate > 0, A/D step, tester, method; no speed_step_m_per_s.
   std::vector<base::ScanIndex> scan;    ///< Rises; a jump is a gap.
-  std::vector<double> coefficient;      ///< One for each scan.
+  std::vector<double> coefficient;      ///< One for each scan; finite.
   std::vector<bool> saturated;          ///< One for each scan.
   model::TestTruth truth;
 

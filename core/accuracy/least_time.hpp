@@ -11,7 +11,7 @@
 namespace stickslip::accuracy {
 
 /// Shortest time of several runs of `work`, since disturbances only add to it. Stops when at least three runs
-/// add up to 20 ms, or fewer to 0.3 s.
+/// add up to 20 ms, or fewer to 0.3 s, or after a run during which the clock stood still.
 /// \return ns, ≥ 1.
 template <typename Work>
 [[nodiscard]] std::int64_t least_time_ns(const base::Clock& clock, const Work& work) {

@@ -55,8 +55,8 @@ struct Peer {
 };
 
 /// The tiers of detect::LiveDetector, the raw maximum less the mean, and a peer, at 50 … 10 000 scans/s.
-/// A rate that estimate::check_sampling() refuses has one row, "all", with the reason. The numbers are the
-/// same in each run, but for the times.
+/// A rate that estimate::check_sampling() refuses has one row, "all", with the reason; these rows come first.
+/// The others follow rate by rate. The numbers are the same in each run, but for the times.
 [[nodiscard]] std::vector<TierRow> compare_tiers(const base::Clock& clock, const Peer& peer);
 
 }  // namespace stickslip::accuracy

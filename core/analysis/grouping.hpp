@@ -35,9 +35,10 @@ struct Pooling {
 struct MeasuredTest {
   std::optional<double> pull_speed_m_per_s;  ///< Nominal; nullopt if unknown.
   TestResults results;
-  SlipSums slips{};                      ///< slip_sums() of its cycles; zero without a table of cycles.
+  /// slip_sums() of its cycles, with the first slips if its analysis kept them; zero without cycles.
+  SlipSums slips{};
   std::string grade{};                   ///< Of the paper; empty if not stated.
-  std::optional<double> stick_time_s{};  ///< mean_stick_time_s() of its cycles.
+  std::optional<double> stick_time_s{};  ///< mean_stick_time_s() of the same slips.
   BudgetFacts budget_facts{};
   std::vector<RestGroup> rests{};  ///< group_by_rest() of its cycles; empty if they have no pull speeds.
   bool speed_changes = false;      ///< It has no Q, and its slips are at several pull speeds.
@@ -81,7 +82,8 @@ struct SpeedGroup {
 
 /// Groups tests of one pull speed (within kSameSpeed of the group's first test), one grade and one
 /// grouping_regime(), unless these are pooled. Unknown speeds count as one speed. The groups are in the order
-/// of rising speed, those without a speed last; groups of equal speed in the order of their first tests.
+/// of rising speed, those without a speed last; groups of exactly equal speed in the order of their first
+/// tests.
 [[nodiscard]] std::vector<SpeedGroup> group_by_speed(std::span<const MeasuredTest> tests,
                                                      Pooling pooling = {});
 

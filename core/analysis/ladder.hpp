@@ -1,7 +1,7 @@
 /// \file
 /// The ladder (docs/ladder.md): the description of a trace from which S, K and S − K come is a rung
 /// (rung.hpp). Here: systematic uncertainties for what a rung leaves open, such as the distance to another
-/// rung, and findings.
+/// rung, added by add_systematic(), and findings.
 #pragma once
 
 #include <string>

@@ -39,9 +39,11 @@ class LiveCycles {
 
 /// Settings of estimates_from_live().
 struct LiveSettlement {
-  bool first_counts = false;  ///< Means include the first slip and those after a hold.
-  std::string reason;         ///< Reason given for all results that turning points do not determine.
-  Slack slack{};              ///< Slips with such a trough are not in the means of S, K and S − K.
+  /// Means include the first slip and those after a hold. If false, the first counts only if it is alone, and
+  /// those after a hold only if all others are such.
+  bool first_counts = false;
+  std::string reason;  ///< Reason given for all results that turning points do not determine.
+  Slack slack{};       ///< Slips with such a trough are not in the means of S, K and S − K.
 };
 
 /// Estimates of a test without a fit, in place of estimate_in_sections(). Values are given to S, K and S − K

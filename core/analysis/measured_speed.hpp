@@ -34,7 +34,7 @@ class MeasuredSpeed {
   /// \param speed_m_per_s  finite.
   void add(double time_s, double speed_m_per_s);
 
-  /// Pull speed from time 0 on.
+  /// Pull speed from time 0 on. Sets a point at the latest reading; more readings may follow.
   /// \return nullopt if the belt never pulled, as without readings, or if more than PullSpeed::kMostPoints
   ///         points are needed.
   [[nodiscard]] std::optional<model::PullSpeed> course();

@@ -95,10 +95,11 @@ class Misfit {
 
 /// Fills mu_s, mu_k, delta_mu, omega, gamma_over_2omega, Q, Q_threshold, threshold_speed,
 /// slip_speed_ratio_threshold, amplitude and delta_mu_scatter, each with its standard error or the reason why
-/// it is absent; calls escape_results(). S, K and S − K are those of estimates.uniform, or else means over
-/// the slips that began from sticking, without those that tell S − K too badly. Of three or more, the first
-/// and those after a hold are left out, too, unless estimates.first_counts or no other is left. Where
-/// neighbouring slips are correlated, the standard errors of these means are those of means that wander.
+/// it is absent; calls escape_results(). S and K include the drift. S, K and S − K are those of
+/// estimates.uniform, or else means over the slips that began from sticking, without those whose error of
+/// S − K exceeds the median |S − K|, unless all do. Of three or more, the first and those after a hold
+/// are left out, too, unless estimates.first_counts or no other is left. Where neighbouring slips are
+/// correlated, the standard errors of these means are those of means that wander.
 ///
 /// The systematic uncertainty of S and S − K is γ v/g: whether the damper's force counts at the slip onset is
 /// a convention that no trace can decide (here: spring only, [Penner 1995, (13)]). If no slip stuck again,
@@ -125,9 +126,11 @@ void escape_results(const SlipEstimates& estimates, TestResults& results);
 /// `reason`.
 void no_model_results(const std::string& reason, TestResults& results);
 
-/// Table of cycles, one row for each slip. Onset, capture, stick and slip times, S − K and slip_speed_ratio
-/// are NaN where the fit did not converge, and for a slip that did not begin from sticking or has no window;
-/// capture and slip time also unless it ended in sticking, stick time also unless its beginning is known.
+/// Table of cycles, one row for each slip; the first of `slips` has number 0 and kCycleIsFirst. Onset,
+/// capture, stick and slip times, S − K, slip_speed_ratio and pull speed are NaN where the fit did not
+/// converge, and for a slip that did not begin from sticking or has no window; capture and slip time also
+/// unless it ended in sticking, stick time also unless its beginning is known, pull speed also on a constant
+/// belt.
 /// The caller sets first_scan, the evidence of capture, and the flags for spikes, gaps and saturation.
 [[nodiscard]] std::vector<detect::Cycle> cycle_table(const estimate::Trace& trace,
                                                      std::span<const detect::Fall> slips,

@@ -72,8 +72,8 @@ template <typename Cycles>
 
 /// Result of pool_slips().
 struct PooledDeltaMu {
-  Estimate mean;                  ///< Of S − K over the slips of all tests, each counted once.
-  Estimate scatter;               ///< Standard deviation from slip to slip; absent for fewer than two slips.
+  Estimate mean;     ///< Of S − K over the slips of all tests, each counted once.
+  Estimate scatter;  ///< Standard deviation of all slips about `mean`; absent for fewer than two slips.
   std::size_t test_count = 0;     ///< Tests whose SlipSums::count is not 0.
   std::size_t slip_count = 0;     ///< Sum of SlipSums::count.
   std::size_t escaped_count = 0;  ///< Sum of SlipSums::escaped_count.

@@ -64,8 +64,10 @@ struct TestResults {
   /// s after the record's first scan, only for mixed: onset of the first slip that ended otherwise than the
   /// one before, or its peak if the onset is not known.
   Estimate transition_time;
-  Estimate cycle_count;            ///< Falls that are slips.
-  Estimate stick_cycle_count;      ///< Slips that ended in sticking.
+  Estimate cycle_count;  ///< Falls that are slips.
+  /// Slips that ended in sticking; the last slip does not tell. 0 in a regime that never sticks. Absent if
+  /// undecided, if fewer than half of the slips tell, or if only the shape of the cycles tells stick-slip.
+  Estimate stick_cycle_count;
   Estimate period_median;          ///< s, from peak to peak.
   Estimate oscillation_frequency;  ///< Hz, cycles over time; ω/2π of a ring-down with a fit.
   Estimate static_coefficient;     ///< Traditional, by the method.

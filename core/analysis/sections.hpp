@@ -66,7 +66,9 @@ struct SectionSettings {
   bool on_threads = false;    ///< Fits the next section beside this one; the estimates are the same.
 };
 
-/// Fits the slips section by section and combines the estimates.
+/// Fits the slips section by section and combines the estimates. S − K that is not told from 0 is half of
+/// its bound, as by tell_bound(): if it is negative but not clearly, or if no slip stuck and its standard
+/// error reaches half of the bound.
 /// \param slips  falls that are slips, in the order of time, not empty. \param sigma  noise of one scan, > 0.
 /// \param prior  of ω, γ and the stick rate; may be empty.
 [[nodiscard]] TestEstimates estimate_in_sections(const estimate::Trace& trace,

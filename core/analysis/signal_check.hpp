@@ -20,7 +20,7 @@ struct SignalCheck {
   std::optional<signal::HeldValues> clipped;  ///< The highest level, where scans stay too often.
   std::optional<signal::HeldValues> frozen;   ///< The value that stood still.
   std::optional<double> coarse_noise;  ///< Noise of a scan in steps of the converter, where below a quarter.
-  std::optional<double> begins_at;     ///< First scan over the largest, where the trace begins in mid-pull.
+  std::optional<double> begins_at;     ///< First value divided by the largest; set if it begins in mid-pull.
   std::optional<NoPull> no_pull;
 
   /// Whether the scans tell neither regime nor coefficients.
@@ -43,7 +43,7 @@ struct SignalCheck {
 /// gaps and lost scans and the scan rate. A clipped pull also keeps its cycle count, period and frequency.
 void void_results(const SignalCheck& check, TestResults& results);
 
-/// Call after void_results(), which removes findings.
+/// Adds a finding for each member of `check` that is set. Call after void_results(), which removes findings.
 void add_signal_findings(const SignalCheck& check, std::size_t scan_count, TestResults& results);
 
 }  // namespace stickslip::analysis

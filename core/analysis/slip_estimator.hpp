@@ -28,7 +28,7 @@ enum class SlipEnd {
 /// Result of estimate_slips().
 struct SlipEstimates {
   /// Marks a slip without a window: the pull ended in it, or a break hides its beginning. Those after that
-  /// one have none either, until a slip has ended in sticking.
+  /// one have none either, until a slip has ended in sticking or a pull begins.
   static constexpr std::size_t kNoWindow = static_cast<std::size_t>(-1);
 
   estimate::Drift drift;                      ///< Drift of the trace; fitted S and K are without it.

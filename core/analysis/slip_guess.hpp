@@ -30,7 +30,7 @@ namespace stickslip::analysis {
 /// \param slips  not empty.
 [[nodiscard]] model::SharedParameters first_guess(const estimate::Trace& trace,
                                                   std::span<const detect::Fall> slips);
-/// Onset, S and K of one slip from its peak and trough.
+/// Onset, S and K of one slip from its peak and trough; S and K without Trace::drift.
 [[nodiscard]] model::SlipParameters first_guess(const estimate::Trace& trace, const detect::Fall& slip,
                                                 const model::SharedParameters& shared);
 

@@ -18,7 +18,8 @@ namespace stickslip::analysis {
 /// Whether slip i is the first of the test, or the first after a stop of the belt.
 [[nodiscard]] bool begins_a_pull(const estimate::Trace& trace, std::span<const detect::Fall> slips,
                                  std::size_t i);
-/// Whether the belt stood still between two slips.
+/// Whether two slips lie in different pulls and the belt only stood still before the later one; false if the
+/// carriage went back.
 [[nodiscard]] bool is_held_between(const estimate::Trace& trace, const detect::Fall& before,
                                    const detect::Fall& after);
 /// When the contact began to rest before a slip that follows a hold, s on the trace's time axis. It is the
@@ -49,7 +50,7 @@ namespace stickslip::analysis {
 [[nodiscard]] std::size_t start_of_loading(const estimate::Trace& trace, const detect::Fall& first,
                                            const model::SharedParameters& shared);
 
-/// Fills estimates.windows and window_of_slip from estimates.ends.
+/// Fills estimates.windows, with first guesses of their slips, and window_of_slip from estimates.ends.
 void lay_windows(const estimate::Trace& trace, std::span<const detect::Fall> slips,
                  const model::SharedParameters& shared, SlipEstimates& estimates);
 /// Whether there are windows and each has at least four usable scans, one more than the slip's parameters.

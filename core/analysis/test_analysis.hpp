@@ -89,7 +89,8 @@ class TestAnalysis {
   [[nodiscard]] const detect::LiveState& live() const noexcept { return live_.state(); }
 
   /// Returns the results of the whole test. Call once. With fewer scans than signal::kFewestScansForNoise
-  /// only spikes, gaps and lost scans are counted.
+  /// only spikes, gaps and lost scans are counted. scan_rate_measured and the uncertainties by calibration
+  /// and zero are absent: core/pipeline adds them.
   [[nodiscard]] TestResults finish();
 
   /// After finish(): one cycle for each slip; empty if there is none. Without S − K where that is absent.

@@ -76,7 +76,7 @@ struct UncertaintyBudget {
 
 /// Budget of one result of a test; nullopt if that has no value. The random part is the standard error, or of
 /// the static coefficient, which is one scan, the noise of a scan. The systematic parts are those of the
-/// estimate.
+/// estimate. The line "replicates" is always kUnknown: one test does not tell how sheets scatter.
 /// \param quantity  quantities()[i] with i in kBudgetQuantities.
 [[nodiscard]] std::optional<UncertaintyBudget> test_budget(const TestResults& results,
                                                            const Quantity& quantity,

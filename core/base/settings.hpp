@@ -90,9 +90,10 @@ class Settings {
   /// Whether this table has the key. Does not count as reading it.
   [[nodiscard]] bool has(std::string_view key) const;
 
-  /// A sub-table; an empty one if absent or no table, whose required keys are then missing.
+  /// A sub-table. An absent one is empty: its required keys are missing. A value that is no table is an
+  /// error, and also gives an empty one.
   [[nodiscard]] Settings table(std::string_view key);
-  /// [[key]] tables in order; none if absent or no array of tables.
+  /// [[key]] tables in order; none if absent. A value that is no array of tables is an error, and gives none.
   [[nodiscard]] std::vector<Settings> tables(std::string_view key);
 
   /// A number in SI units, written as a string with unit, or bare if dimensionless. Must be finite.

@@ -86,7 +86,7 @@ class Board {
   /// On any status but kScans block.count is 0. Does not allocate, lock, log or throw.
   [[nodiscard]] virtual ReadStatus read(ScanBlock& block, std::chrono::milliseconds timeout) noexcept = 0;
 
-  /// Ends the acquisition; scans not read are lost. Allowed at any time, any number of times.
+  /// Ends the acquisition; scans not read may be lost. Allowed at any time, any number of times.
   virtual void stop() noexcept = 0;
 
   /// Reason for the last failure of start() or read(), for the user; empty if neither failed since a start()

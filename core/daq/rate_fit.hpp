@@ -41,8 +41,8 @@ class RateFit {
   static constexpr std::int64_t kFewestAnchors = 5;
 
   /// Two anchors agree if the clock time between them equals the time of the scans at the expected rate to
-  /// within kUsualDelay_ns + min(kRateDoubt · time, kLongestDrift_ns). kRateDoubt is the relative uncertainty
-  /// of the expected rate.
+  /// within kUsualDelay_ns + min(kRateDoubt · time, kLongestDrift_ns), and is at least a tenth of it; less
+  /// is a burst, and begins a segment. kRateDoubt is the relative uncertainty of the expected rate.
   static constexpr double kRateDoubt = 0.02;
   static constexpr double kLongestDrift_ns = 100e6;
   /// Usual delay of a read, ns.

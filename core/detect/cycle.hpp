@@ -39,7 +39,7 @@ struct Cycle {
   double force_drop = 0.0;         ///< peak − trough, as a coefficient.
   double delta_mu = 0.0;           ///< S − K of this slip; NaN if not estimated.
   double delta_mu_standard_error = 0.0;
-  double slip_speed_ratio = 0.0;  ///< Largest slip speed over drive speed [Penner 1995, (18)].
+  double slip_speed_ratio = 0.0;  ///< Largest slip speed over drive speed, −c′/r [Penner 1995, (18)].
   std::uint8_t flags = 0;         ///< CycleFlag bits.
   /// Pull speed at the onset if it is measured or changes; else NaN. Set at the end of the test.
   double pull_speed_m_per_s = std::numeric_limits<double>::quiet_NaN();
@@ -47,7 +47,7 @@ struct Cycle {
   /// test, from the fit of the whole test or, without that, from LiveCycle::evidence; NaN if undetermined, as
   /// for the last slip.
   double capture_evidence = std::numeric_limits<double>::quiet_NaN();
-  /// Log-likelihood ratio at the live decision, and the time of that decision; NaN if there was none.
+  /// Log-likelihood ratio at the live decision, and LiveCycle::decided_time_s; NaN if there was none.
   double live_capture_evidence = std::numeric_limits<double>::quiet_NaN();
   double live_decision_time_s = std::numeric_limits<double>::quiet_NaN();
 };

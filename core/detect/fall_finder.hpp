@@ -46,8 +46,8 @@ class FallFinder {
   /// Scans since the last confirmed turning point, or since the first scan; not before the first add().
   [[nodiscard]] double scans_since_turn() const noexcept;
   [[nodiscard]] bool falling() const noexcept { return direction_ == Direction::kDown; }
-  /// Positions of the highest and lowest median since the last confirmed turning points: while falling(), of
-  /// the peak and of the trough so far.
+  /// Positions of the highest median since the last confirmed trough, and of the lowest since the last
+  /// confirmed peak: while falling(), of the peak and of the trough so far.
   [[nodiscard]] std::size_t high_at() const noexcept { return high_.position; }
   [[nodiscard]] std::size_t low_at() const noexcept { return low_.position; }
   [[nodiscard]] double high() const noexcept { return high_.value; }  ///< The median at high_at().

@@ -72,7 +72,8 @@ struct LiveCycle {
   /// Log-likelihood ratio of captured over free at the decision, or at the last test if there was none; 0 if
   /// it was too small to be computed (Budget::decisive).
   double evidence = std::numeric_limits<double>::quiet_NaN();
-  /// When it was decided how the slip ended, on the time axis of `cycle`.
+  /// When it was decided how the slip ended, less the despiker's delay; on the time axis of `cycle`. NaN if
+  /// it was not.
   double decided_time_s = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -90,8 +91,9 @@ struct LiveState {
   /// By the slip decided last: stick-slip, or ring-down, which becomes steady sliding when it has died away.
   /// Undecided until a slip is decided.
   model::Regime regime = model::Regime::kUndecided;
-  /// Onset (the peak if unknown) of the slip that began the ring-down, the first not captured since the last
-  /// capture; on the time axis of Cycle. NaN unless the regime is ring-down.
+  /// Onset of the slip that began the ring-down, the first not captured since the last capture or steady
+  /// sliding; its peak until its cycle closes, and if the onset is unknown. On the time axis of Cycle. NaN
+  /// unless the regime is ring-down.
   double ring_down_since_s = std::numeric_limits<double>::quiet_NaN();
   std::int64_t slip_count = 0;      ///< Slips confirmed so far, with the one under way.
   std::optional<LiveCycle> latest;  ///< The cycle closed last.

@@ -61,8 +61,8 @@ class LiveDetector {
   std::optional<LiveCycle> end() noexcept;
 
   [[nodiscard]] const LiveState& state() const noexcept { return state_; }
-  /// The fall detected at the latest scan, if any; its scan numbers count from the first scan added, without
-  /// missing scans.
+  /// The fall detected at the latest scan, if any; none before the loading. Its scan numbers count from the
+  /// first scan added, without missing scans.
   [[nodiscard]] const std::optional<FallBegun>& fall_begun() const noexcept { return fall_begun_; }
   /// The slip under way with its present estimates; null if there is none. Valid until the next add(), gap()
   /// or end(). Number, first_scan and flags of its scans are set when the cycle closes.

@@ -29,7 +29,8 @@ class SlipFollower {
   void add(double time_s, double value) noexcept { buffer_.add(time_s, value); }
   /// Reports a fall under way: times of its peak and of its lowest point so far.
   void falls(double peak_s, double lowest_s) noexcept;
-  /// Scans are missing after the last one; later scans are not connected with earlier ones.
+  /// Scans are missing after the last one; later scans are not connected with earlier ones. A slip whose end
+  /// is not decided yet stays undecided.
   /// \param now_s  time of the last scan before the gap.
   void gap(double now_s) noexcept;
 
@@ -39,7 +40,8 @@ class SlipFollower {
   ///        free oscillation is taken to begin from sticking in any case.
   /// \param sigma  noise of one scan.
   void open(const Fall& fall, double peak_s, double trough_s, bool begins_from_stick, double sigma) noexcept;
-  /// Does the task that is due, if there is one. \return true if it decided how the slip ends.
+  /// Does the task that is due, if there is one. From 2.5 periods after the peak on it decides as force()
+  /// does with has_next; what that leaves undecided stays so. \return true if it decided how the slip ends.
   [[nodiscard]] bool step(double now_s, double sigma) noexcept {
     return state_ > State::kDone && !(now_s < now_.next_task_s) && do_task(now_s, sigma);
   }
@@ -52,6 +54,7 @@ class SlipFollower {
 
   [[nodiscard]] bool is_open() const noexcept { return state_ != State::kClosed; }
   [[nodiscard]] bool decided() const noexcept { return now_.decided; }
+  /// False also if it is not decided.
   [[nodiscard]] bool captured() const noexcept { return (slip_.cycle.flags & kCycleCaptured) != 0; }
   [[nodiscard]] const LiveCycle& slip() const noexcept { return slip_; }
   /// Mutable, so that the caller can set values that it knows better.

@@ -41,7 +41,7 @@ struct TurningPoint {
 struct SlipOfPeak {
   double delta_mu = 0.0;          ///< S − K ≥ 0; 0 if the peak is lower than that for S = K.
   double peak_time_s = 0.0;       ///< t₁, from the onset to the peak.
-  double slip_speed_ratio = 0.0;  ///< Largest slip speed over drive speed [18].
+  double slip_speed_ratio = 0.0;  ///< Largest slip speed over drive speed, −c′/r [18].
 };
 /// Finds the slip whose force peaks at this height: solves the closed form of the peak, [2] with damping
 /// [17], for S − K.

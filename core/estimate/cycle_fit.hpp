@@ -1,7 +1,7 @@
 /// \file
 /// Live maximum-likelihood fit of the closed form to the scans of one slip.
 ///
-///     const CycleFit fit = fit_cycle(buffer.points(), true, first_guess, knowledge, sigma);
+///     const CycleFit fit = fit_cycle(buffer.points(), true, start, shared, knowledge, sigma);
 ///
 /// Six parameters with analytic derivatives and Huber's weights, as the fit of the whole test
 /// (core/estimate/slip_fit); the present knowledge of ω, γ and r (SharedPosterior) enters as a

@@ -50,7 +50,7 @@ struct Value {
 /// one of S, with the stick time, and K is there.
 struct LawTest {
   double pull_speed_m_per_s = 0.0;     ///< > 0
-  std::optional<double> stick_time_s;  ///< Of its slips, geometric mean; > 0; with S.
+  std::optional<double> stick_time_s;  ///< Of its slips, geometric mean; > 0; required with S.
   std::optional<Value> S;
   std::optional<Value> K;
   /// The belt stood still for the stick time, whatever its speed. Such a test has S and no K.
@@ -78,11 +78,12 @@ inline constexpr std::array kLaws{Law::kConstant, Law::kAgeing, Law::kRate, Law:
 
 /// How well a law predicts tests that it was not fitted to.
 struct LawScore {
-  double score = 0.0;         ///< Mean log density of a left-out test.
+  double score = 0.0;         ///< Mean over the tests of the log density of the left-out S and K.
   double behind = 0.0;        ///< Score of the best law less this one; 0 for the best.
   double behind_error = 0.0;  ///< Standard error of `behind`, by its scatter over the tests.
 };
 
+/// Whether a dependence is there. kNo: it is too small to matter.
 enum class Verdict { kYes, kNo, kCannotTell };
 
 /// S over log₁₀ of the stick time in s, or K over the speed in m/s.
@@ -91,9 +92,11 @@ struct Dependence {
   std::vector<std::size_t> tests;  ///< Indices among the tests, one for each point.
   std::optional<Line> constant;    ///< Absent with fewer than two points.
   std::optional<Line> line;  ///< With the slope, β or μ′; absent with fewer than three points or one place.
-  double slope_that_matters = 0.0;  ///< As β or μ′: a tenth of S − K over a decade of speed; 0: not known.
-  Verdict verdict = Verdict::kCannotTell;
-  std::string reason;  ///< Why not, for people; set exactly for kCannotTell.
+  /// As β or μ′: a tenth of S − K over a decade of speed about the geometric mean of the tests' speeds; 0:
+  /// not known.
+  double slope_that_matters = 0.0;
+  Verdict verdict = Verdict::kCannotTell;  ///< kYes whatever the line if FrictionLaw::is_rate_and_state().
+  std::string reason;                      ///< Why not, for people; set exactly for kCannotTell.
   /// For kCannotTell: chance alone would not keep it from being told, and the systematic part alone does.
   bool systematic_vetoes = false;
 
@@ -119,7 +122,7 @@ struct FrictionLaw {
   /// rest alone then describes pulls and holds together. If not, and not `may_have_none`, no law is told.
   std::optional<RateAndState> rate_and_state;
   /// Mean S − K, by whose tenth a dependence matters, of the tests with both. A tenth of the largest K where
-  /// none has both or the mean is not positive; 0 without K.
+  /// none has both or the mean is not positive; 0 without a K above 0.
   double delta_mu = 0.0;
 };
 

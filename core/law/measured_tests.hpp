@@ -31,7 +31,8 @@ struct LawTests {
 /// - A test counts for nothing with a finding that is a fault, or scans that another test has too.
 /// - A test with holds or several speeds counts by its rests, each of them as a test: four or more slips at
 ///   one speed, and each slip after a hold, which has no K. S and K are those of analysis::group_by_rest().
-///   A test of several speeds without such rests, as a ramp, counts for nothing.
+///   A test of several speeds without such rests, as a ramp, counts for nothing. A test of one speed whose
+///   rests hold no slip after a hold counts as any other.
 /// - Any other test counts for nothing without a known pull speed.
 /// - S needs a stick time: slips after the first that begin from a stick.
 /// - K of a test that slides steadily is its kinetic coefficient where it has no other K.

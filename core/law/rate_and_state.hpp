@@ -34,10 +34,11 @@ struct RateAndState {
   /// (kCriticalSlipFactor) and the 95 % intervals of b and b − a.
   double within_factor = 0.0;
   /// Whether the law is told: a exceeds its 99 % interval, b and b − a exceed their 95 % intervals, each with
-  /// the systematic part of the values, and D_c is finite.
+  /// the systematic part of the values, and D_c is finite. a must do so with and without the correction for
+  /// the lower K of slips after holds.
   bool is_told = false;
-  /// Whether there may be no direct effect: a does not exceed its 95 % interval with the systematic part of
-  /// the values.
+  /// Whether there may be no direct effect: with or without that correction, a does not exceed its 95 %
+  /// interval with the systematic part of the values.
   bool may_have_none = true;
   double between_variance = 0.0;  ///< Variance of S between pulls, beyond their own errors.
   /// S of each test by the law; nullopt for a test that is not used.
@@ -54,8 +55,8 @@ inline constexpr double kDirectEffectPart = 0.3;
 /// b − a by the slope between the pulls of other sheets; a by their difference.
 ///
 /// A slip after a hold is faster than a usual one, so that its K is lower by (b − a) ln of the ratio of their
-/// S − K; its S, which was taken on the K of usual slips, is less by as much. Pulls that rest for less than
-/// five times the duration of a slip are left out.
+/// S − K; its S, which was taken on the K of usual slips, is less by as much. Of the other sheets, pulls that
+/// rest for less than five times the duration of a slip, or have no S above K, are left out.
 ///
 /// \param points  S over log₁₀ of the stick time in s. \param of_tests  index of the test of each point.
 /// \return nullopt without a sheet with holds, without three slow pulls of other sheets at two speeds, or

@@ -51,7 +51,8 @@ struct ProcessorSettings {
   /// self-check, unloaded level and the causes of gaps, and the commands of its notes are carried out again.
   std::shared_ptr<const daq::RecordedFacts> recorded;
   std::optional<daq::SecondChannel> second;  ///< Second channel of the board; nullopt if there is none.
-  /// Whether the stamps are of the machine's own clock, so that they can measure the scan rate.
+  /// Whether the stamps are of the machine's own clock. If not, tests have no clock anchors, measured
+  /// scan rate, read latency and stalls.
   bool clock_is_real = true;
   CalibrationInUse calibration = {};
 };
@@ -59,10 +60,13 @@ struct ProcessorSettings {
 /// Thread-bound: the processing thread.
 class Processor {
  public:
+  /// Tells the sinks that the bench is idle or armed: scans are expected.
   /// \param sinks  called in this order; they outlive the processor.
+  /// \throws std::invalid_argument as Segmenter.
   Processor(const ProcessorSettings& settings, daq::Calibration calibration, std::vector<Sink*> sinks);
 
   /// Takes the next block, in the order of the indices.
+  /// \param block  not empty.
   /// \param gap_cause  cause of the gap, if the index jumps before this block.
   /// \param halted  the board had halted before this block: the size of a gap is then an estimate.
   void process(const daq::ScanBlock& block, daq::GapCause gap_cause, bool halted = false);
@@ -85,11 +89,11 @@ class Processor {
   [[nodiscard]] CommandReport stop(const std::string& who);
   /// Adds a remark at the latest scan of the running test; refused without one.
   [[nodiscard]] CommandReport mark(const std::string& text);
-  /// Sets the zero of the load cell from the next scan on, so that the mean force of the unloaded scans
-  /// before (up to IdleScans::kKept_s) is zero. Ends BenchState::kFinishing. Refused during a test, without
-  /// scans from the board, without readings in volts or counts, with too few unloaded scans, with the
-  /// converter at a rail, and if that mean is a load: as a coefficient, the larger of
-  /// SegmenterSettings::start_coefficient and UnloadedLevel::kFarthest or more.
+  /// Sets the zero of the load cell from the next scan on, and for the scans kept for the next test, so that
+  /// the mean force of the unloaded scans before (up to IdleScans::kKept_s) is zero. Ends
+  /// BenchState::kFinishing. Refused during a test, without scans from the board, without readings in volts
+  /// or counts, with too few unloaded scans, with the converter at a rail, and if that mean is a load: as a
+  /// coefficient, the larger of SegmenterSettings::start_coefficient and UnloadedLevel::kFarthest or more.
   [[nodiscard]] TareReport tare(const std::string& who);
   /// Replaces the calibration from the next scan on. Refused unless the bench is idle. Scans kept for the
   /// next test are dropped: its record begins after this call.

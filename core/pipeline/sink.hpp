@@ -28,7 +28,7 @@ struct TestStart {
   std::int64_t number = 0;     ///< Rises by one from test to test.
   daq::ScanIndex first = 0;    ///< First scan that belongs to the test's record.
   daq::ScanIndex trigger = 0;  ///< Scan at which the force or a command began it.
-  daq::ClockStamp stamp;       ///< Of the block with the trigger, less the lateness of its reading.
+  daq::ClockStamp stamp;       ///< Of the block with the trigger, less its delay if a stall held it up.
   std::shared_ptr<const daq::SelfCheck> self_check;  ///< Null if there were no idle scans.
   bool by_command = false;
   /// Coefficient read by the unloaded cell before it, as Segmenter::unloaded_level().

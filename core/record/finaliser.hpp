@@ -55,7 +55,8 @@ struct Finalised {
 ///        the results of such a test are absent, with the reason "interrupted" or "damaged". A test without
 ///        end has the status interrupted either way.
 /// \param longest  time to wait for another process that holds the journal.
-/// \param expected_scans  scans written to the journal; nullopt if unknown. A record with fewer reports it.
+/// \param expected_scans  scans written to the journal; nullopt if unknown. A record with fewer says so in
+///        its reasons, and has the status incomplete or interrupted.
 /// Errors: kUsage as JournalLock::take() and read_journal(), so also for an empty journal
 /// (remove_if_empty()); else kFailure.
 [[nodiscard]] base::Result<Finalised> finalise(const std::filesystem::path& journal,

@@ -1,7 +1,7 @@
 /// \file
 /// Reads data sets and attributes of untrusted files. All functions except has() throw HdfError that names
-/// the object and the fault. Numbers must be stored as type T exactly (kind, size, sign). At most 2²⁸ rows of
-/// a column, or 64 MiB of texts, are read at once.
+/// the object and the fault. Numbers must be stored as type T exactly (kind, size, sign), little-endian. At
+/// most 2²⁸ rows of a column, or 64 MiB of texts, are read at once.
 #pragma once
 
 #include <optional>

@@ -1,7 +1,8 @@
 /// \file
 /// Writers and readers of the groups of a record file (layout_*.cpp). The layout is described in
 /// docs/record-file.md. The functions throw HdfError; std::invalid_argument for scans and clocks out of range
-/// (range_check.hpp) and for an impossible calibration (daq::Calibration); and what a ScanSource throws.
+/// (range_check.hpp) and for an impossible calibration (daq::Calibration); and what a ScanSource or
+/// base::LongColumn throws.
 #pragma once
 
 #include <functional>
@@ -19,7 +20,7 @@ namespace stickslip::record {
 /// Bits of raw/flags. Files have kReplacedForDetection exactly where they have kSpike.
 enum ScanFlag : std::uint8_t {
   kSpike = 1U << 0U,
-  kSaturated = 1U << 1U,
+  kSaturated = 1U << 1U,  ///< The count is 0 or maxdata; never set for other quantities.
   kReplacedForDetection = 1U << 2U,
 };
 

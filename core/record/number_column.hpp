@@ -19,7 +19,7 @@ struct NumberColumn {
   std::string unit;        ///< Stated beside the numbers; empty if there is none.
   std::string why;         ///< Why it cannot be read, such as "is complex"; empty if it can.
   std::uint64_t size = 0;  ///< Numbers in the column; 0 if it cannot be read.
-  bool single = false;     ///< The numbers have at most 24 bits of mantissa.
+  bool single = false;     ///< The numbers are floating point of at most 32 bits; false for integers.
 };
 
 /// Most columns of one matrix; a matrix with more is refused.

@@ -32,7 +32,8 @@ class PatientJournal {
   /// \param path  created with its folders at the first write; under another name if a journal or record of
   ///        this name then exists (journal_name.hpp).
   /// \param header  gets a uuid if it has none; must have a load cell if the board gives counts (contract).
-  /// \param memory  limit of buffered entries, bytes.
+  /// \param memory  limit of waiting_size(), bytes, beyond which entries are lost. Entries written since the
+  ///        last sync are kept in memory too, but do not count.
   /// \param calls  must outlive the journal.
   PatientJournal(std::filesystem::path path, RecordHeader header, std::size_t memory,
                  const FileCalls& calls = system_calls());

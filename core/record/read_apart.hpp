@@ -44,8 +44,8 @@ class ApartReader {
                                           const std::function<bool()>& given_up = {});
 
   /// The two halves of read(), to do other work between them. A second begin() without finish() discards the
-  /// first record. finish() needs a begin() before it (contract). Errors of begin(): kFailure if no child can
-  /// be started; of finish(): those of read().
+  /// first record. finish() needs a begin() before it that succeeded (contract). Errors of begin(): kFailure
+  /// if no child can be started; of finish(): those of read().
   [[nodiscard]] base::Result<void> begin(const std::filesystem::path& path, const base::WorkLimits& limits);
   [[nodiscard]] base::Result<Record> finish(const std::function<bool()>& given_up = {});
 

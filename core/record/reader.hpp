@@ -24,10 +24,10 @@ namespace stickslip::record {
 [[nodiscard]] base::Result<Record> read_record(const std::filesystem::path& path,
                                                const FileCalls& calls = system_calls());
 
-/// Reads a record whose scans (with what stands beside them: second channel, spikes, noise-free force), gaps,
-/// events, and cycles and modes of the truth stay empty. The raw values are compared with their checksum.
-/// Errors as read_record(), but damage in what is not read is not found. For files from elsewhere:
-/// read_results_apart().
+/// Reads a record whose scans (with what stands beside them: second channel, spikes, noise-free force), gaps
+/// and events stay empty, as do the truth's cycles and modes. The detected cycles are read. The raw values
+/// are compared with their checksum. Errors as read_record(), but damage in what is not read is not found.
+/// For files from elsewhere: read_results_apart().
 /// \param only  names of the results to read, the others are absent; empty: all.
 [[nodiscard]] base::Result<Record> read_without_scans(const std::filesystem::path& path,
                                                       std::span<const std::string> only = {},

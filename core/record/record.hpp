@@ -148,7 +148,7 @@ struct RecordHeader {
   std::string uuid;   ///< Identifies the test for ever; JournalWriter and PatientJournal make one if empty.
   std::string title;  ///< For people.
   /// Number of the test since the start of the program, from 1; a batch that is resumed goes on with its
-  /// numbers. Imported: number in a trace of several tests, else absent.
+  /// numbers. Imported: number in a trace of several tests, else absent. Absent if simulated without a clock.
   std::optional<std::int64_t> test_number;
   /// Scan at which the force or a command began the test; absent if imported or simulated without a clock.
   std::optional<daq::ScanIndex> trigger_scan;
@@ -213,10 +213,11 @@ struct Record {
   RecordHeader header;
   std::vector<daq::ScanIndex> scan;  ///< Index of the acquisition.
   std::vector<double> raw;           ///< Of the quantity header.board.quantity.
-  /// Noise-free force of each scan (model::TrueForce), NaN if unknown; empty if unknown for all.
+  /// Noise-free force of each scan, a coefficient (model::TrueForce), NaN if unknown; empty if unknown for
+  /// all.
   std::vector<double> true_coefficient;
-  /// Code of the second channel of each scan, daq::SecondChannel::kNoCode where it did not arrive; empty
-  /// unless header.board.second.
+  /// Code of the second channel of each scan, daq::SecondChannel::kNoCode where it did not arrive; empty if
+  /// no code is known, or without header.board.second.
   std::vector<std::int32_t> second;
   std::vector<daq::ScanIndex> spikes;  ///< Scans replaced for the detector, rising.
   std::vector<daq::Gap> gaps;

@@ -22,6 +22,7 @@ class JitteringClock {
   JitteringClock(const ClockJitter& settings, double scan_rate_Hz)
       : sd_scans_(settings.sd_s * scan_rate_Hz) {}
 
+  /// Returns to scan 0. \param seed  of the scene's run.
   void restart(std::uint64_t seed);
 
   /// Instant of a scan. Call for all scans in order, from 0 on. Instants are clipped so that none lies before

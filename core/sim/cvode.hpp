@@ -1,7 +1,7 @@
 /// \file
 /// SUNDIALS CVODE as an integrator that stops at events: the only wrapper of its headers.
 ///
-///     Cvode integrator{Cvode::Method::kAdams, system, 2};
+///     Cvode integrator{Cvode::Method::kAdams, system, 2, 0.001};
 ///     integrator.set_tolerance({1e-9, 1e-9});
 ///     integrator.restart({0.3, 0.0});               // at t = 0
 ///     const Cvode::Step step = integrator.step();   // as far as CVODE likes to go at once

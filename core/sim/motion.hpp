@@ -24,7 +24,7 @@ namespace stickslip::sim {
 /// Segment of the belt's motion. At t after the start of the segment its speed is
 ///     v(t) = speed + acceleration t + jerk t²/2 + decaying_speed e^(−t/time_constant).
 struct BeltSegment {
-  double duration_s = 0.0;
+  double duration_s = 0.0;     ///< ≥ 0; may be infinite.
   double speed_m_per_s = 0.0;  ///< Negative: the carriage returns.
   /// The belt stops for the rest of the segment as soon as the spring's force is zero or less, which may be
   /// at its start.
@@ -51,6 +51,7 @@ struct KineticDrift {
 
 /// Effects `velocity_dependence` and `stribeck` (motion): while the sled slides at V = |belt − sled|, m/s,
 ///     K(V) = K + per_speed · V + stribeck_rise · e^(−(V/stribeck_speed)^stribeck_exponent).
+/// A drift of K changes the first term alone.
 /// [Armstrong-Hélouvry, Dupont and Canudas de Wit, Automatica 30(7):1083–1138, 1994, (4)]
 struct VelocityDependence {
   /// Any sign. Below zero friction decreases with speed; nothing keeps K(V) ≥ 0 here: load_scene()

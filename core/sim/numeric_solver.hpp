@@ -38,8 +38,8 @@ class NumericSolver final : public MotionSolver {
   void follow_to(const ScanTime& instant, ForceFollower& follower) override;
   void skip(std::int64_t scans) override;
   /// The accuracy is the one asked for, or a larger one if rounding set the limit, or if CVODE has had to
-  /// widen its tolerance since the construction. Near grazing the time of a capture is less accurate: its
-  /// error goes as the square root of that of the coefficient.
+  /// widen its tolerance since the construction; infinite if a belt segment lasts infinitely. Near grazing
+  /// the time of a capture is less accurate: its error goes as the square root of that of the coefficient.
   [[nodiscard]] SolverMethod method() const override { return motion_->method(); }
 
  private:

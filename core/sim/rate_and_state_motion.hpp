@@ -8,6 +8,8 @@
 ///                 slide steadily (V = belt speed) crosses it too.
 ///     capture     |V| falls through a hundredth of it: the sled moves with the belt. A ring-down whose
 ///                 speed stays above never counts as sticking again, as with Coulomb friction.
+/// At the start of a piece of the motion the mode follows |V| by the same thresholds, but without onset or
+/// capture. So a belt that starts or stops at once begins a slip that is no onset.
 /// The belt's speed here is |v| at the start of the present piece of the motion, but never less than a
 /// hundredth of the highest |v| at the ends of the belt's segments, also while the belt rests.
 /// K of a slip is the coefficient of steady sliding at that speed, S that of the spring at the onset, but at

@@ -185,7 +185,7 @@ struct Pull {
 /// Belt speed over time, counted from the first movement; nullopt for a steady pull and for a belt that never
 /// moves forwards. Of `constant_speed` it shows pull and stop, not the return of the carriage, whose end
 /// depends on the force; if stop_s is 0 the last speed goes on for ever. Curves are approximated by lines
-/// within 0.1 % of the speed's change.
+/// within 0.1 % of the speed's change. nullopt too if it needs more points than PullSpeed::kMostPoints.
 [[nodiscard]] std::optional<model::PullSpeed> pull_speed_of(const Scene& scene);
 
 /// True scan rate at this nominal rate, with the clock's error.

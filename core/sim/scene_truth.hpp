@@ -14,6 +14,7 @@ namespace stickslip::sim {
 /// The truth about one repetition. Times of modes and cycles are seconds after its first scan as a record has
 /// them: scan index over nominal rate. Frequencies and speeds are true ones. Slips are those that begin
 /// because the contact gives way; what that means for rate-and-state friction: rate_and_state_motion.hpp.
+/// Modes and cycles cover the whole repetition; all else counts only slips that begin before the pull ends.
 ///
 /// Regime over the pull: stick-slip if each slip ended in sticking, ring-down if none did, mixed if some did;
 /// undecided if there is no slip, or only one that the end of the pull interrupts. A slip counts as

@@ -52,9 +52,9 @@ inline constexpr std::int64_t kFullBaseline = 200;
 /// standard deviation, a fiftieth of k.
 inline constexpr std::int64_t kLargestBaseline = 10'000;
 
-/// Average number of values until one arm passes h, for independent normal scores whose mean is
-/// `shift` standard deviations: Siegmund's approximation [Siegmund, Sequential Analysis, 1985;
-/// Montgomery 2012, eq. 9.5]. \param k, h  > 0.
+/// Average number of values until the upper arm passes h, for independent normal scores whose mean is
+/// `shift` standard deviations, negative for a fall: Siegmund's approximation [Siegmund, Sequential Analysis,
+/// 1985; Montgomery 2012, eq. 9.5]. \param k, h  > 0.
 [[nodiscard]] double one_sided_run_length(double shift, double k = kReferenceValue,
                                           double h = kDecisionInterval);
 /// Average number of values until either arm passes h: 1/ARL = 1/ARL⁺ + 1/ARL⁻ of one_sided_run_length().
@@ -85,7 +85,8 @@ class ControlChart {
   /// Height of an arm, in standard deviations; 0 after an alarm.
   [[nodiscard]] double upper() const noexcept { return upper_.height; }
   [[nodiscard]] double lower() const noexcept { return lower_.height; }
-  /// Values since the arm that rose first was 0: the onset of an alarm to come is one of these.
+  /// Values since the arm that rose first was 0; 0 if both are. The onset of an alarm to come is one of these
+  /// or a later value.
   [[nodiscard]] std::int64_t excursion_count() const noexcept {
     return static_cast<std::int64_t>(std::max(upper_.since.count, lower_.since.count));
   }

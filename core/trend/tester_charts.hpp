@@ -20,7 +20,8 @@
 
 namespace stickslip::trend {
 
-/// In the order of chart_kinds().
+/// In the order of chart_kinds(), which has the units. Damping is γ/2ω, spikes are per scan, and the rate is
+/// the measured over the granted scan rate, less 1.
 enum class Quantity : std::uint8_t { kReference, kOmega, kDamping, kZero, kNoise, kSpikes, kRate };
 inline constexpr std::size_t kQuantities = static_cast<std::size_t>(Quantity::kRate) + 1;
 
@@ -44,7 +45,8 @@ struct TestValues {
   std::optional<double> pull_speed_m_per_s;
   std::optional<double> mu_k;
   std::optional<double> delta_mu;
-  /// By Quantity; that of kReference is not read: TesterCharts takes delta_mu or mu_k.
+  /// By Quantity, in the units of chart_kinds(); that of kReference is not read: TesterCharts takes delta_mu
+  /// or mu_k.
   std::array<std::optional<double>, kQuantities> values;
 
   bool operator==(const TestValues&) const = default;
