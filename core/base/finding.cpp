@@ -89,7 +89,8 @@ constexpr std::array<FindingKind, kFindingCodes> kKinds{{
      "read the reason, and use S - K with the uncertainty given"},
     {kMisfit, "misfit", "misfit", kWarning,
      "The fit leaves residuals larger than the noise, or the same in each slip",
-     "look for the cause named, and use S - K with the uncertainty given"},
+     "look for the cause named; state a load cell or filter that it is (load_cell_frequency, anti_alias); "
+     "else use S - K with the uncertainty given"},
     {kLevelDrift, "level-drift", "consistency", kNote, "S and K drift along the track",
      "look at the cycles: S and K are means over this stretch"},
     {kSlack, "slack", "consistency", kWarning,

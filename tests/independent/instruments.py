@@ -43,6 +43,9 @@ ROWS = {
 }
 
 
+TRANSDUCERS = [row for row, settings in ROWS.items() if "cell" in settings or "filter" in settings]
+
+
 @dataclasses.dataclass
 class Number:
     """A result, its truth and its errors; no value where the program gives none."""
@@ -81,11 +84,18 @@ def told(program, *words):
     return done.stdout
 
 
-def outcome(program, setup):
+def transducer_options(setup):
+    """What the maker of cell and filter states."""
+    cell = ["--load-cell-frequency", f"{setup.cell} Hz", "--load-cell-damping", f"{setup.cell_damping}"] if setup.cell else []
+    return cell + (["--anti-alias", f"{setup.filter} Hz", "--anti-alias-order", f"{setup.order}"] if setup.filter else [])
+
+
+def outcome(program, setup, known=False):
+    """With `known` the program is told the transducer."""
     with tempfile.TemporaryDirectory(prefix="stickslip-") as folder:
         table, record = pathlib.Path(folder) / "pull.csv", pathlib.Path(folder) / "pull.h5"
         slips = simulate_to(table, setup)
-        told(program, "import", table, *import_options(setup), "-o", record)
+        told(program, "import", table, *import_options(setup), *(transducer_options(setup) if known else []), "-o", record)
         test = json.loads(told(program, "analyze", "--json", record))["tests"][0]
 
     def number(name, truth):
@@ -99,11 +109,11 @@ def outcome(program, setup):
                    test["details"]["omega"].get("systematic_uncertainty") or 0.0)
 
 
-def outcomes(program, row, tests, seed):
+def outcomes(program, row, tests, seed, known=False):
     """Seeds from this one on. The programs run beside each other."""
     setups = [Setup(seed=seed + test, **ROWS[row]) for test in range(tests)]
     with concurrent.futures.ProcessPoolExecutor(os.cpu_count()) as pool:
-        return list(pool.map(outcome, [program] * tests, setups))
+        return list(pool.map(outcome, [program] * tests, setups, [known] * tests))
 
 
 def rms(values):
@@ -133,6 +143,9 @@ def main():
           f"{'instrument':34} {'bias':>8} {'z':>7} {'stat.':>7} {'2':>7} {'flagged':>8} {'of both':>8} {'wrong':>7} {'bias':>7} {'z':>6}  findings")
     for row in ROWS:
         print(table_row(row, outcomes(build / "bin" / "stickslip", row, tests, seed)), flush=True)
+    print("\nthe program is told cell and filter:")
+    for row in TRANSDUCERS:
+        print(table_row(row, outcomes(build / "bin" / "stickslip", row, tests, seed, known=True)), flush=True)
 
 
 if __name__ == "__main__":

@@ -70,7 +70,7 @@ TEST(Config, ShippedFileShowsTheDefaults) {
   const std::regex key{R"(^# ([a-z_]+ = .*))"};
   // These have no default, or one that cannot be written.
   const std::regex example{
-      R"(^# (scan_rate|file|hanging|board|serial|bus_path|subdevice|pull_speed|stiffness|socket|speed_gain|speed_channel|position_gain|position_channel|load_cell_gain|sled_mass|gravity|load_cell_zero|characterisation|replicate|broker|tester|user|password_file|ca_file|certificate_file|key_file) = .*|^# calibration = "calibrations".*)"};
+      R"(^# (scan_rate|file|hanging|board|serial|bus_path|subdevice|pull_speed|stiffness|anti_alias|load_cell_frequency|socket|speed_gain|speed_channel|position_gain|position_channel|load_cell_gain|sled_mass|gravity|load_cell_zero|characterisation|replicate|broker|tester|user|password_file|ca_file|certificate_file|key_file) = .*|^# calibration = "calibrations".*)"};
   for (std::string line; std::getline(in, line);) {
     std::smatch match;
     const bool is_default = std::regex_match(line, match, key) && !std::regex_match(line, example);
@@ -120,6 +120,23 @@ TEST(Config, EstimatorsOfVersion01MeanTurningPointsWithAWarning) {
   EXPECT_EQ(config->estimator, detect::EstimatorTier::kTurningPoints);
   EXPECT_TRUE(config->warnings.empty());
   EXPECT_FALSE(read(std::string{kGood} + "[analysis]\nestimator = \"best\"\n"));
+}
+
+TEST(Config, TransducerIsThatOfTheFileElseOfTheRecord) {
+  const DaemonConfig config =
+      *read(kGood +
+            "anti_alias = \"60 Hz\"\n[tester]\nload_cell_frequency = \"120 Hz\"\nload_cell_damping = 0.1\n");
+  const model::Transducer& stated = config.bench.transducer;
+  EXPECT_EQ(stated.load_cell->frequency_Hz, 120.0);
+  EXPECT_EQ(stated.load_cell->damping_ratio, 0.1);
+  EXPECT_EQ(stated.anti_alias->cutoff_Hz, 60.0);
+  EXPECT_EQ(stated.anti_alias->order, 4);
+  model::Tester recorded;
+  recorded.transducer.load_cell = {80.0, 0.02};
+  EXPECT_EQ(config.bench.tester(recorded).transducer.load_cell->frequency_Hz, 120.0);
+  EXPECT_EQ(read(kGood)->bench.tester(recorded).transducer.load_cell->frequency_Hz, 80.0);
+  EXPECT_FALSE(read(kGood + "[tester]\nload_cell_damping = 1\n"));
+  EXPECT_FALSE(read(kGood + "[tester]\nload_cell_frequency = \"0 Hz\"\n"));
 }
 
 TEST(Config, KeepsWhatItIsTold) {

@@ -163,9 +163,8 @@ std::unique_ptr<MotionSolver> wrapped_solver(const Motion& motion, double scan_r
 
 using LoadCellOption = std::optional<model::LoadCellDynamics>;
 using FilterOption = std::optional<model::AntiAlias>;
-#define STICKSLIP_TRANSDUCER                                                                          \
-  "_ZN9stickslip3sim10TransducerC1ERKSt8optionalINS0_16LoadCellDynamicsEERKS2_INS0_9AntiAliasEERKNS_" \
-  "5model"                                                                                            \
+#define STICKSLIP_TRANSDUCER                                                                                \
+  "_ZN9stickslip3sim10TransducerC1ERKSt8optionalINS_5model16LoadCellDynamicsEERKS2_INS3_9AntiAliasEERKNS3_" \
   "10OscillatorEd"
 void real_transducer(Transducer*, const LoadCellOption&, const FilterOption&, const model::Oscillator&,
                      double) STICKSLIP_REAL(STICKSLIP_TRANSDUCER);
