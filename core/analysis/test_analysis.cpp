@@ -22,7 +22,6 @@
 #include "core/analysis/slack.hpp"
 #include "core/analysis/slip_list.hpp"
 #include "core/analysis/traditional.hpp"
-#include "core/analysis/transducer_correction.hpp"
 #include "core/base/contract.hpp"
 #include "core/base/nan.hpp"
 #include "core/detect/regime_rule.hpp"
@@ -494,13 +493,15 @@ TestEstimates TestAnalysis::estimate(estimate::Trace& trace, const base::LongCol
   // Where the speed changes, the mean of a cycle does so too, without any drift of the paper.
   if (!settings_.skipped.drift && trace.belt.is_constant()) trace.drift = significant_drift(trace, slips);
   trace.belt.take_off_drift(trace.drift.rate_per_s);
+  ErrorFactors factors;
   const auto estimates = [&](const estimate::SharedPrior& prior) {
-    return estimate_in_sections(trace, slips, sigma, prior, settings_.tester, section_settings());
+    TestEstimates found =
+        estimate_in_sections(trace, slips, sigma, prior, settings_.tester, section_settings());
+    widen_errors(factors, found);
+    return found;
   };
   TestEstimates alone = estimates({});
-  if (!settings_.tester.transducer.is_ideal()) {
-    alone = without_transducer(trace, slips, sigma, std::move(alone));
-  }
+  if (!settings_.tester.transducer.is_ideal()) factors = take_off_transducer(trace, slips, sigma, alone);
   if (alone.model_describes) tester_ = alone.tester;
   if (!alone.model_describes || (alone.misfit.is_significant() && trace.belt.is_constant())) not_enough();
   const auto held = [&](const estimate::SharedPrior& prior) {
@@ -530,25 +531,30 @@ TestEstimates TestAnalysis::estimate(estimate::Trace& trace, const base::LongCol
   return with;
 }
 
-TestEstimates TestAnalysis::without_transducer(estimate::Trace& trace,
+ErrorFactors TestAnalysis::take_off_transducer(estimate::Trace& trace,
                                                const base::LongColumn<detect::Fall>& slips, double sigma,
-                                               TestEstimates seen) const {
+                                               TestEstimates& estimates) const {
   const ThroughTransducer through{settings_.tester.transducer, 1.0 / settings_.scan_rate_Hz,
                                   settings_.scratch_folder};
   const auto fit = [&](const estimate::Trace& of, const base::LongColumn<detect::Fall>& own) {
     return estimate_in_sections(of, own, sigma, {}, settings_.tester, section_settings());
   };
   std::optional<TestEstimates> found =
-      through.estimate(trace, seen, [&](const estimate::Trace& of) { return fit(of, slips); });
-  if (!found || !found->model_describes) return seen;
-  // What one section tells of the errors holds for all.
-  base::LongColumn<detect::Fall> own{settings_.scratch_folder};
-  for (std::size_t i = 0; i < std::min(slips.size(), ThroughTransducer::kMostSlipsOfErrors); ++i)
-    own.push_back(slips[i]);
-  const auto fit_own = [&](const estimate::Trace& of) { return fit(of, own); };
-  if (!through.widen_errors(trace, *found, sigma, fit_own)) return seen;
+      through.estimate(trace, estimates, [&](const estimate::Trace& of) { return fit(of, slips); });
+  if (!found || !found->model_describes) return {};
+  const auto fit_own = [&](const estimate::Trace& of) {
+    base::LongColumn<detect::Fall> own{settings_.scratch_folder};
+    for (std::size_t i = 0; i < slips.size() && slips[i].trough_at + 1.0 < static_cast<double>(of.size());
+         ++i)
+      own.push_back(slips[i]);
+    return own.empty() ? TestEstimates{} : fit(of, own);
+  };
+  const std::optional<ErrorFactors> factors = through.error_factors(trace, *found, sigma, fit_own);
+  if (!factors) return {};
   trace.value = through.force(trace, *found);
-  return *std::move(found);
+  estimates = *std::move(found);
+  widen_errors(*factors, estimates);
+  return *factors;
 }
 
 Estimate TestAnalysis::mu_slope(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,

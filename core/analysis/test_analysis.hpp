@@ -21,6 +21,7 @@
 #include "core/analysis/signal_check.hpp"
 #include "core/analysis/skipped_corrections.hpp"
 #include "core/analysis/slack.hpp"
+#include "core/analysis/transducer_correction.hpp"
 #include "core/base/long_column.hpp"
 #include "core/base/scan_index.hpp"
 #include "core/detect/cycle.hpp"
@@ -160,11 +161,12 @@ class TestAnalysis {
   /// \param not_enough  called as soon as the fit is likely to need turning points beside it.
   [[nodiscard]] TestEstimates estimate(estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
                                        double sigma, const std::function<void()>& not_enough);
-  /// Estimates from the trace less what the transducer adds to the slips, and the trace without it; where
-  /// that does not settle, `seen` and the trace as it was. \param seen  from the trace as it is.
-  [[nodiscard]] TestEstimates without_transducer(estimate::Trace& trace,
+  /// Takes off the trace what the transducer adds to the slips, and replaces `estimates`, which are those of
+  /// the trace, by those without it. Where that does not settle, nothing changes. \return what errors of fits
+  /// to the trace are to be multiplied by.
+  [[nodiscard]] ErrorFactors take_off_transducer(estimate::Trace& trace,
                                                  const base::LongColumn<detect::Fall>& slips, double sigma,
-                                                 TestEstimates seen) const;
+                                                 TestEstimates& estimates) const;
   /// Estimates from cycles with turning points. \param reason  why no results of a fit are there.
   [[nodiscard]] TestEstimates by_turning_points(const estimate::Trace& trace,
                                                 const base::LongColumn<detect::Fall>& slips,

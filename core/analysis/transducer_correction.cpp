@@ -115,6 +115,25 @@ estimate::Trace with_values(const estimate::Trace& trace, Column values) {
   return other;
 }
 
+/// The first scans.
+estimate::Trace first_part(const estimate::Trace& trace, std::size_t end,
+                           const std::filesystem::path& scratch_folder) {
+  estimate::Trace part{Column{scratch_folder},
+                       Column{scratch_folder},
+                       base::LongColumn<std::uint8_t>{scratch_folder},
+                       trace.drift,
+                       trace.belt,
+                       trace.breaks,
+                       trace.lost_s};
+  for (std::size_t k = 0; k < end; ++k) {
+    part.time_s.push_back(trace.time_s[k]);
+    part.value.push_back(trace.value[k]);
+    part.usable.push_back(trace.usable[k]);
+  }
+  std::erase_if(part.breaks, [end](std::size_t scan) { return scan >= end; });
+  return part;
+}
+
 /// Change of a result in its standard errors; infinity where one is absent.
 double moved(const TestEstimates& before, const TestEstimates& after, Estimate TestResults::*result) {
   const Estimate& from = before.results.*result;
@@ -137,6 +156,7 @@ class Scatter {
       ++i;
     });
   }
+  [[nodiscard]] std::size_t size() const noexcept { return squares_.size(); }
   [[nodiscard]] double square(std::size_t result) const { return squares_[result]; }
 
  private:
@@ -168,7 +188,7 @@ std::optional<TestEstimates> ThroughTransducer::estimate(const estimate::Trace& 
   constexpr double kSettled = 0.02;  // Standard errors that S - K and K move in a round.
   const Column& measured = trace.value;
   std::optional<TestEstimates> found;
-  Column off;  // What is taken off.
+  Column off{scratch_folder_};  // What is taken off.
   for (std::size_t k = 0; k < measured.size(); ++k) off.push_back(0.0);
   Column left_before;
   double part = kFirstPart;
@@ -211,45 +231,60 @@ Column ThroughTransducer::force(const estimate::Trace& trace, const TestEstimate
   return force;
 }
 
-bool ThroughTransducer::widen_errors(const estimate::Trace& trace, TestEstimates& found, double sigma,
-                                     const Fit& fit) const {
+std::optional<ErrorFactors> ThroughTransducer::error_factors(const estimate::Trace& whole,
+                                                             const TestEstimates& found, double sigma,
+                                                             const Fit& fit) const {
   constexpr int kTraces = 12;  // The scatter is then known to a fifth.
   constexpr int kFewestSettled = 8;
   constexpr std::uint64_t kSeed = 1;
-  const Column added = distortion(trace, found.fitted);
-  const Column forces = force(trace, found);
+  TestEstimates start;
+  for (std::size_t i = 0; i < std::min(found.fitted.size(), kMostSlipsOfErrors); ++i)
+    start.fitted.push_back(std::as_const(found.fitted)[i]);
+  const std::size_t end =
+      start.fitted.size() < found.fitted.size() ? std::as_const(start.fitted).back().end : whole.size();
+  const estimate::Trace trace = first_part(whole, end, scratch_folder_);
+  const Column added = distortion(trace, start.fitted);
+  const Column ideal = without_noise(trace, start.fitted, force(trace, start), scratch_folder_);
+  const TestEstimates truth = fit(with_values(trace, ideal.view()));
   std::mt19937_64 random{kSeed};
   std::normal_distribution<double> noise{0.0, sigma};
-  const Column ideal = without_noise(trace, found.fitted, forces, scratch_folder_);
-  const TestEstimates truth = fit(with_values(trace, ideal.view()));
   Scatter plain;
   Scatter through;
   int settled = 0;
   for (int i = 0; i < kTraces; ++i) {
-    Column seen{scratch_folder_};
+    Column shown{scratch_folder_};
     Column alone{scratch_folder_};
-    for (std::size_t k = 0; k < added.size(); ++k) {
+    for (std::size_t k = 0; k < trace.size(); ++k) {
       const double error = noise(random);
       alone.push_back(ideal[k] + error);
-      seen.push_back(ideal[k] + added[k] + error);
+      shown.push_back(ideal[k] + added[k] + error);
     }
     const TestEstimates by_fit = fit(with_values(trace, std::move(alone)));
-    const estimate::Trace shown = with_values(trace, std::move(seen));
-    const std::optional<TestEstimates> by_rounds = estimate(shown, found, fit);
+    const auto by_rounds = estimate(with_values(trace, std::move(shown)), start, fit);
     if (!by_rounds || !by_rounds->model_describes || !by_fit.model_describes) continue;
     plain.add(by_fit.results, truth.results);
     through.add(by_rounds->results, truth.results);
     ++settled;
   }
-  if (settled < kFewestSettled) return false;
+  if (settled < kFewestSettled) return std::nullopt;
+  ErrorFactors factors;
+  for (std::size_t i = 0; i < plain.size(); ++i)
+    factors.push_back(plain.square(i) > 0.0 ? std::max(1.0, std::sqrt(through.square(i) / plain.square(i)))
+                                            : 1.0);
+  return factors;
+}
+
+void widen_errors(const ErrorFactors& factors, TestEstimates& estimates) {
+  if (factors.empty()) return;
+  double of_tester = 1.0;
   std::size_t i = 0;
-  for_each_result(found.results, [&](const ResultName&, Estimate& estimate) {
-    const double before = plain.square(i);
-    const double after = through.square(i++);
-    if (estimate.standard_error && before > 0.0 && after > before)
-      *estimate.standard_error *= std::sqrt(after / before);
+  for_each_result(estimates.results, [&](const ResultName&, Estimate& estimate) {
+    const double factor = factors[i++];
+    if (estimate.standard_error) *estimate.standard_error *= factor;
+    if (&estimate == &estimates.results.omega || &estimate == &estimates.results.gamma_over_2omega)
+      of_tester = std::max(of_tester, factor);
   });
-  return true;
+  if (estimates.tester) estimates.tester->covariance *= of_tester * of_tester;
 }
 
 }  // namespace stickslip::analysis

@@ -11,6 +11,8 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "core/analysis/sections.hpp"
 #include "core/base/long_column.hpp"
@@ -18,6 +20,12 @@
 #include "core/model/transducer.hpp"
 
 namespace stickslip::analysis {
+
+/// One for each result, in the order of for_each_result(); empty: all are 1.
+using ErrorFactors = std::vector<double>;
+
+/// Multiplies the standard errors; those of the tester by the larger one of omega and gamma_over_2omega.
+void widen_errors(const ErrorFactors& factors, TestEstimates& estimates);
 
 class ThroughTransducer {
  public:
@@ -38,13 +46,13 @@ class ThroughTransducer {
   [[nodiscard]] std::optional<TestEstimates> estimate(const estimate::Trace& trace, const TestEstimates& seen,
                                                       const Fit& fit) const;
 
-  /// Multiplies the standard error of each result by what the transducer hides: how much more estimate()
-  /// scatters than fit() over traces of the slips found with noise, of which the random stream is always the
-  /// same. A factor is at least 1. \param found  of estimate(). \param sigma  noise of a scan. \param fit may
-  /// take the first slips alone. \return false if estimate() seldom settles with other noise: then the errors
-  /// are unknown.
-  [[nodiscard]] bool widen_errors(const estimate::Trace& trace, TestEstimates& found, double sigma,
-                                  const Fit& fit) const;
+  /// How much more estimate() scatters than fit(), of each result and at least 1, over traces of the first
+  /// slips found with noise; the random stream is always the same. The transducer hides a part of the slips.
+  /// \param found  of estimate(). \param sigma  noise of a scan. \param fit  of a trace that may end after
+  /// kMostSlipsOfErrors slips. \return nullopt if estimate() seldom settles with other noise.
+  [[nodiscard]] std::optional<ErrorFactors> error_factors(const estimate::Trace& trace,
+                                                          const TestEstimates& found, double sigma,
+                                                          const Fit& fit) const;
 
   /// The trace less what the transducer adds to these slips.
   [[nodiscard]] base::LongColumn<double> force(const estimate::Trace& trace,
