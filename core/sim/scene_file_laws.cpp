@@ -88,12 +88,12 @@ void check_kinetic(Settings effect, const Scene& scene) {
   double without = scene.mu_k;
   if (scene.stribeck)
     without += rise * std::exp(-std::pow(V / scene.stribeck->speed_m_per_s, scene.stribeck->exponent));
-  if (!(without + per_speed * V < 0.0)) return;  // Nor where other values of the scene are refused.
-  constexpr double kAccepted = 1.0 - 1e-5;       // Of the limit, whatever rounding to six digits makes of it.
-  effect.refuse("per_speed",
-                fmt::format("takes mu_k = {} down to {:.3g} at {:.3g} m/s, which sliding reaches; "
-                            "must be at least {:.6g} s/m",
-                            scene.mu_k, without + per_speed * V, V, -kAccepted * without / V));
+  if (without + per_speed * V >= 0.0) return;
+  effect.refuse(
+      "per_speed",
+      fmt::format("takes mu_k = {} down to {:.3g} at {}, which sliding reaches; must be at least {}",
+                  scene.mu_k, without + per_speed * V, base::format_quantity(V, Dimension::kSpeed),
+                  base::format_quantity(-without / V, Dimension::kTimePerLength)));
 }
 
 RateAndState read_rate_and_state(Settings effect, const Scene& scene) {
