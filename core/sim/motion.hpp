@@ -54,8 +54,7 @@ struct KineticDrift {
 /// A drift of K changes the first term alone.
 /// [Armstrong-Hélouvry, Dupont and Canudas de Wit, Automatica 30(7):1083–1138, 1994, (4)]
 struct VelocityDependence {
-  /// Any sign. Below zero friction decreases with speed; nothing keeps K(V) ≥ 0 here: load_scene()
-  /// refuses a scene whose slips at a constant speed, or whose belt, would go below.
+  /// Any sign. Below zero friction decreases with speed; nothing keeps K(V) ≥ 0.
   double per_speed_s_per_m = 0.0;
   /// Increase of K at V → 0; from 0 to S − K. A contact with a smaller S − K has that as its increase.
   double stribeck_rise = 0.0;

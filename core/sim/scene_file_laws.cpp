@@ -1,11 +1,8 @@
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <string_view>
 #include <utility>
 
 #include "core/base/wording.hpp"
-#include "core/model/closed_forms.hpp"
 #include "core/sim/scene_file_parts.hpp"
 
 namespace stickslip::sim {
@@ -61,41 +58,6 @@ Stribeck read_stribeck(Settings effect, const Scene& scene) {
   return stribeck;
 }
 
-/// A speed of sliding that the scene reaches at least: that of the belt, and the fastest of a slip at a
-/// constant speed, if the pull takes the force up to S. \param S_less_K  S − K at rest.
-double fastest_sliding_m_per_s(const Scene& scene, double S_less_K) {
-  double fastest_m_per_s = 0.0;
-  if (scene.piecewise_speed) {
-    for (const PiecewiseSpeed::Point& point : scene.piecewise_speed->points)
-      fastest_m_per_s = std::max(fastest_m_per_s, std::abs(point.speed_m_per_s));
-  }
-  if (!scene.constant_speed) return fastest_m_per_s;
-  const double v = scene.constant_speed->pull_speed_m_per_s;
-  if (scene.speed_ramp) return std::max(v, scene.speed_ramp->to_m_per_s);
-  const double metres = scene.gravity_m_per_s2 / scene.oscillator.omega0_squared();
-  const double travel_m = v * scene.constant_speed->pull_s - scene.startup_slack_m.value_or(0.0);
-  if (!(S_less_K > 0.0) || travel_m < scene.mu_s * metres) return v;
-  const double Q = model::dimensionless_speed(v / metres, scene.oscillator.omega_rad_per_s(), S_less_K);
-  // K falls with the speed: the sled slips faster than with K at rest.
-  return v * (1.0 + model::slip_speed_ratio(Q, scene.oscillator.gamma_over_2omega()));
-}
-
-/// Refuses K(V) < 0. \param scene  with both laws, oscillator and belt.
-void check_kinetic(Settings effect, const Scene& scene) {
-  const double per_speed = *scene.velocity_dependence_s_per_m;
-  const double rise = scene.stribeck ? scene.stribeck->rise : 0.0;
-  const double V = fastest_sliding_m_per_s(scene, scene.mu_s - scene.mu_k - rise);
-  double without = scene.mu_k;
-  if (scene.stribeck)
-    without += rise * std::exp(-std::pow(V / scene.stribeck->speed_m_per_s, scene.stribeck->exponent));
-  if (without + per_speed * V >= 0.0) return;
-  effect.refuse(
-      "per_speed",
-      fmt::format("takes mu_k = {} down to {:.3g} at {}, which sliding reaches; must be at least {}",
-                  scene.mu_k, without + per_speed * V, base::format_quantity(V, Dimension::kSpeed),
-                  base::format_quantity(-without / V, Dimension::kTimePerLength)));
-}
-
 RateAndState read_rate_and_state(Settings effect, const Scene& scene) {
   constexpr std::array<std::pair<std::string_view, RateAndState::Law>, 2> kLaws{
       {{"ageing", RateAndState::Law::kAgeing}, {"slip", RateAndState::Law::kSlip}}};
@@ -120,7 +82,6 @@ void read_friction_laws(Settings effects, Scene& scene) {
     scene.velocity_dependence_s_per_m = read_velocity_dependence(effects.table("velocity_dependence"));
   }
   if (lists(effects, "stribeck")) scene.stribeck = read_stribeck(effects.table("stribeck"), scene);
-  if (scene.velocity_dependence_s_per_m) check_kinetic(effects.table("velocity_dependence"), scene);
   if (!lists(effects, "rate_and_state")) return;
   scene.rate_and_state = read_rate_and_state(effects.table("rate_and_state"), scene);
   // A law of its own, without the S and K that these change.

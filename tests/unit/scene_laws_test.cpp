@@ -200,22 +200,6 @@ TEST(SceneLaws, MistakesAreNamed) {
   EXPECT_THAT(refusal_of(kShortPull + kAgeing + "mu_0 = -1\n"), HasSubstr("test.toml:27"));
 }
 
-// The belt has 2.54 mm/s; a slip from S to K reaches 7 mm/s, where K = 0.3 - 50 s/m * V is below zero.
-TEST(SceneLaws, FrictionBelowZeroAtASpeedThatTheSledReachesIsRefused) {
-  const auto with = [](const std::string& per_speed, const std::string& more = "") {
-    return refusal_of(kShortPull + "[effects.velocity_dependence]\nper_speed = \"" + per_speed + "\"\n" +
-                      more);
-  };
-  EXPECT_THAT(with("-200 s/m"), AllOf(HasSubstr("test.toml:22"), HasSubstr("per_speed"),
-                                      HasSubstr("takes mu_k = 0.3 down to -"),
-                                      HasSubstr("which sliding reaches; must be at least -")));
-  EXPECT_THAT(with("-50 s/m"), HasSubstr("must be at least -4"));
-  EXPECT_EQ(with("-40 s/m"), "");
-  EXPECT_EQ(with("200 s/m"), "");
-  // What Stribeck's curve adds at that speed counts.
-  EXPECT_EQ(with("-47 s/m", "[effects.stribeck]\nrise = 0.04\nspeed = \"1 m/s\"\n"), "");
-}
-
 TEST(SceneLaws, RateAndStateStandsAlone) {
   for (const std::string other :
        {"[effects.scatter]\ndelta_mu_cv = 0.3\n", "[effects.first_peak]\nchange = 0.01\n",
