@@ -37,7 +37,7 @@ struct AnalyzeOptions {
   std::string estimator;  ///< "turning-points" or "fit"; empty: that of each record.
   /// Of analysis::kCorrectionNames, or "nothing" alone; empty: as each record says.
   std::vector<std::string> keep;
-  TransducerOptions transducer;  ///< Instead of that of each record.
+  TransducerOptions transducer;  ///< Each part instead of that of each record.
   bool effects = false;          ///< What each of them does, beside the results.
   bool json = false;
 };
@@ -121,7 +121,12 @@ base::Result<std::string> run_analyze(const AnalyzeOptions& options) {
           file, detect::name(*tier));
     }
     if (!options.method.empty()) process.method = record::method_text(*method);
-    if (!transducer->is_ideal()) record->header.tester.set_transducer(*transducer);
+    if (!transducer->is_ideal()) {
+      model::Transducer own = record->header.tester.tester().transducer;
+      if (transducer->load_cell) own.load_cell = transducer->load_cell;
+      if (transducer->anti_alias) own.anti_alias = transducer->anti_alias;
+      record->header.tester.set_transducer(own);
+    }
     if (*skipped) process.kept = analysis::text_of(**skipped);
     base::Result<evaluation::TesterAnalysis> analysed = evaluation::analyse_with_tester(*record, prior);
     if (!analysed) {

@@ -20,8 +20,9 @@ Result<std::optional<double>> frequency_of(const char* option, const std::string
   if (text.empty()) return std::optional<double>{};
   const Result<double> frequency_Hz = base::parse_quantity(text, Dimension::kFrequency);
   if (!frequency_Hz) return base::usage_error("{}: {}", option, frequency_Hz.error().message);
-  if (!(*frequency_Hz > 0.0)) {
-    return base::usage_error("{} {}: must be above 0, such as \"120 Hz\"", option, base::one_line(text, 40));
+  if (!(*frequency_Hz >= model::kSlowestTransducer_Hz && *frequency_Hz <= model::kFastestTransducer_Hz)) {
+    return base::usage_error("{} {}: must be {} Hz to {} MHz", option, base::one_line(text, 40),
+                             model::kSlowestTransducer_Hz, 1e-6 * model::kFastestTransducer_Hz);
   }
   return std::optional{*frequency_Hz};
 }

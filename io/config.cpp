@@ -14,6 +14,9 @@
 namespace stickslip::io {
 namespace {
 
+const base::Limits kTransducerFrequencies =
+    base::Limits::between(model::kSlowestTransducer_Hz, model::kFastestTransducer_Hz);
+
 using base::Dimension;
 using base::Settings;
 using drivers::AcquisitionMode;
@@ -173,10 +176,12 @@ void read_board(Settings table, const std::filesystem::path& folder, DaemonConfi
       "scan_rate", Dimension::kFrequency, base::Limits::above_up_to(0.0, kFastestScanRate_Hz));
   config.board.simulated.scan_rate_Hz = scan_rate_Hz;
   const auto anti_alias_Hz =
-      table.quantity_if_given("anti_alias", Dimension::kFrequency, base::Limits::above(0.0));
+      table.quantity_if_given("anti_alias", Dimension::kFrequency, kTransducerFrequencies);
   const auto order = static_cast<int>(
       table.integer("anti_alias_order", 1, model::AntiAlias::kHighestOrder, model::kTypicalFilterOrder));
   if (anti_alias_Hz) config.bench.transducer.anti_alias = {*anti_alias_Hz, order};
+  if (!anti_alias_Hz && table.has("anti_alias_order"))
+    table.refuse("anti_alias_order", "needs anti_alias, such as \"60 Hz\"");
   config.board.comedi.scan_rate_Hz = scan_rate_Hz.value_or(config.board.comedi.scan_rate_Hz);
   config.clock_speed = table.quantity("clock_speed", Dimension::kDimensionless,
                                       base::Limits::above_up_to(0.0, kFastestClock), config.clock_speed);
@@ -250,11 +255,13 @@ void read_tester(Settings table, const std::filesystem::path& folder, DaemonConf
   bench.stiffness_N_per_m =
       table.quantity_if_given("stiffness", Dimension::kStiffness, base::Limits::above(0.0));
   const auto cell_frequency_Hz =
-      table.quantity_if_given("load_cell_frequency", Dimension::kFrequency, base::Limits::above(0.0));
+      table.quantity_if_given("load_cell_frequency", Dimension::kFrequency, kTransducerFrequencies);
   const double cell_damping =
       table.quantity("load_cell_damping", Dimension::kDimensionless,
                      base::Limits::between(0.0, model::kLargestCellDamping), model::kTypicalCellDamping);
   if (cell_frequency_Hz) bench.transducer.load_cell = {*cell_frequency_Hz, cell_damping};
+  if (!cell_frequency_Hz && table.has("load_cell_damping"))
+    table.refuse("load_cell_damping", "needs load_cell_frequency, such as \"120 Hz\"");
   bench.load_cell_gain_N_per_V =
       table.quantity_if_given("load_cell_gain", Dimension::kForcePerVoltage, base::Limits::any());
   if (bench.load_cell_gain_N_per_V == 0.0) table.refuse("load_cell_gain", "must not be 0");
@@ -379,7 +386,8 @@ model::Tester BenchConfig::tester(const std::optional<model::Tester>& known) con
   tester.gravity_m_per_s2 = gravity_m_per_s2.value_or(tester.gravity_m_per_s2);
   if (pull_speed_m_per_s) tester.pull_speed_m_per_s = pull_speed_m_per_s;
   if (stiffness_N_per_m) tester.stiffness_N_per_m = stiffness_N_per_m;
-  if (!transducer.is_ideal()) tester.transducer = transducer;
+  if (transducer.load_cell) tester.transducer.load_cell = transducer.load_cell;
+  if (transducer.anti_alias) tester.transducer.anti_alias = transducer.anti_alias;
   return tester;
 }
 

@@ -366,6 +366,13 @@ TestResults TestAnalysis::finish() {
     if (is_fitted && !estimates.model_describes)
       add_distance_to_mean_force(mean_force(trace, slips), estimates.results);
     take_model_results(estimates.results, results);
+    if (!settings_.tester.transducer.is_ideal() && !transducer_is_off_) {
+      base::add(
+          results.findings,
+          base::make_finding(base::FindingCode::kTransducerShows,
+                             "the load cell and filter that are stated are not taken off the trace: S and K "
+                             "are as read"));
+    }
     results.mu_slope = mu_slope(trace, slips, sigma, estimates);
     if (fits_whole_test() && estimates.model_describes) speed_results(trace, estimates, results);
     if (verdict.transition_slip) {
@@ -501,7 +508,11 @@ TestEstimates TestAnalysis::estimate(estimate::Trace& trace, const base::LongCol
     return found;
   };
   TestEstimates alone = estimates({});
-  if (!settings_.tester.transducer.is_ideal()) factors = take_off_transducer(trace, slips, sigma, alone);
+  if (!settings_.tester.transducer.is_ideal()) {
+    const auto taken_off = take_off_transducer(trace, slips, sigma, alone);
+    factors = taken_off.value_or(ErrorFactors{});
+    transducer_is_off_ = taken_off.has_value();
+  }
   if (alone.model_describes) tester_ = alone.tester;
   if (!alone.model_describes || (alone.misfit.is_significant() && trace.belt.is_constant())) not_enough();
   const auto held = [&](const estimate::SharedPrior& prior) {
@@ -531,17 +542,18 @@ TestEstimates TestAnalysis::estimate(estimate::Trace& trace, const base::LongCol
   return with;
 }
 
-ErrorFactors TestAnalysis::take_off_transducer(estimate::Trace& trace,
-                                               const base::LongColumn<detect::Fall>& slips, double sigma,
-                                               TestEstimates& estimates) const {
+std::optional<ErrorFactors> TestAnalysis::take_off_transducer(estimate::Trace& trace,
+                                                              const base::LongColumn<detect::Fall>& slips,
+                                                              double sigma, TestEstimates& estimates) const {
   const ThroughTransducer through{settings_.tester.transducer, 1.0 / settings_.scan_rate_Hz,
                                   settings_.scratch_folder};
   const auto fit = [&](const estimate::Trace& of, const base::LongColumn<detect::Fall>& own) {
     return estimate_in_sections(of, own, sigma, {}, settings_.tester, section_settings());
   };
+  if (slips.size() > ThroughTransducer::kMostSlips) return std::nullopt;
   std::optional<TestEstimates> found =
       through.estimate(trace, estimates, [&](const estimate::Trace& of) { return fit(of, slips); });
-  if (!found || !found->model_describes) return {};
+  if (!found || !found->model_describes) return std::nullopt;
   const auto fit_own = [&](const estimate::Trace& of) {
     base::LongColumn<detect::Fall> own{settings_.scratch_folder};
     for (std::size_t i = 0; i < slips.size() && slips[i].trough_at + 1.0 < static_cast<double>(of.size());
@@ -550,11 +562,11 @@ ErrorFactors TestAnalysis::take_off_transducer(estimate::Trace& trace,
     return own.empty() ? TestEstimates{} : fit(of, own);
   };
   const std::optional<ErrorFactors> factors = through.error_factors(trace, *found, sigma, fit_own);
-  if (!factors) return {};
+  if (!factors) return std::nullopt;
   trace.value = through.force(trace, *found);
   estimates = *std::move(found);
   widen_errors(*factors, estimates);
-  return *factors;
+  return factors;
 }
 
 Estimate TestAnalysis::mu_slope(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,

@@ -162,11 +162,12 @@ class TestAnalysis {
   [[nodiscard]] TestEstimates estimate(estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
                                        double sigma, const std::function<void()>& not_enough);
   /// Takes off the trace what the transducer adds to the slips, and replaces `estimates`, which are those of
-  /// the trace, by those without it. Where that does not settle, nothing changes. \return what errors of fits
-  /// to the trace are to be multiplied by.
-  [[nodiscard]] ErrorFactors take_off_transducer(estimate::Trace& trace,
-                                                 const base::LongColumn<detect::Fall>& slips, double sigma,
-                                                 TestEstimates& estimates) const;
+  /// the trace, by those without it. \return what errors of fits to the trace are to be multiplied by;
+  /// nullopt, with nothing changed, where the slips are more than ThroughTransducer::kMostSlips or the rounds
+  /// do not settle.
+  [[nodiscard]] std::optional<ErrorFactors> take_off_transducer(estimate::Trace& trace,
+                                                                const base::LongColumn<detect::Fall>& slips,
+                                                                double sigma, TestEstimates& estimates) const;
   /// Estimates from cycles with turning points. \param reason  why no results of a fit are there.
   [[nodiscard]] TestEstimates by_turning_points(const estimate::Trace& trace,
                                                 const base::LongColumn<detect::Fall>& slips,
@@ -196,6 +197,7 @@ class TestAnalysis {
   base::LongColumn<detect::Cycle> cycles_;
   std::optional<TesterEstimate> tester_;
   std::optional<TesterCheck> tester_check_;
+  bool transducer_is_off_ = false;  ///< What a stated transducer adds was taken off the trace.
   std::vector<base::ScanIndex> spikes_;
   std::vector<double> spike_coefficients_;
 };

@@ -25,7 +25,7 @@ constexpr double kSlipPhase_rad = 0.02;
 /// Largest phase of a transducer's oscillation in a step, which one section of it hands to the next as
 /// straight lines.
 constexpr double kTransducerPhase_rad = 0.1;
-/// Most steps of a scan interval: a transducer faster than that shows the force as it is.
+/// Most steps of a scan interval. A transducer so fast that it would need more adds next to nothing.
 constexpr double kMostSteps = 64.0;
 
 /// Step of the response, a whole part of the scan interval.
@@ -37,7 +37,7 @@ double step_of(double interval_s, const model::Transducer& transducer, double om
   return interval_s / std::clamp(std::ceil(steps), 1.0, kMostSteps);
 }
 
-/// Adds what the transducer adds, scan by scan, while the slips follow each other.
+/// Appends, for each scan, what the transducer shows less the fitted slip.
 class Course {
  public:
   Course(const estimate::Trace& trace, const model::Transducer& transducer, double step_s,
@@ -142,6 +142,11 @@ double moved(const TestEstimates& before, const TestEstimates& after, Estimate T
                                                      : std::numeric_limits<double>::infinity();
 }
 
+/// S - K is known as a bound alone, which has no standard error.
+bool is_a_bound(const TestEstimates& estimates) {
+  return estimates.results.delta_mu.value && !estimates.results.delta_mu.standard_error;
+}
+
 /// Sums of squared deviations of each result from that of `truth`.
 class Scatter {
  public:
@@ -179,22 +184,30 @@ Column ThroughTransducer::distortion(const estimate::Trace& trace,
 std::optional<TestEstimates> ThroughTransducer::estimate(const estimate::Trace& trace,
                                                          const TestEstimates& seen, const Fit& fit) const {
   // A fixed point, at which the residuals are those of a fit through the transducer. How far a round moves
-  // towards it is learnt from the one before, as a cell that rings near the oscillation turns an error of the
-  // slips by -0.8, and a slow filter leaves 0.9 of it. [Irons and Tuck, Int. J. Num. Meth. Eng. 1:275, 1969]
+  // towards it is learnt from the one before: where a cell rings near the oscillation a whole round would
+  // multiply an error of the slips by -0.8, and by 0.9 behind a slow filter. [Irons and Tuck, Int. J. Num.
+  // Meth. Eng. 1:275, 1969]
   constexpr int kMostRounds = 25;
+  constexpr int kMostFailures = 3;
   constexpr double kFirstPart = 0.6;
   constexpr double kLeastPart = 0.1;
   constexpr double kMostPart = 4.0;
-  constexpr double kSettled = 0.02;  // Standard errors that S - K and K move in a round.
+  constexpr double kSettled = 0.02;  // Standard errors that S - K and K move in a whole round.
+  constexpr double kLongestLag_rad =
+      0.4 * std::numbers::pi;  // Else the next slip shows before this one has ended.
+  if (seen.fitted.empty()) return std::nullopt;
+  const double lag_s = model::TransducerResponse{transducer_, interval_s_}.lag_s();
+  if (lag_s * std::as_const(seen.fitted).front().shared.omega > kLongestLag_rad) return std::nullopt;
   const Column& measured = trace.value;
   std::optional<TestEstimates> found;
   Column off{scratch_folder_};  // What is taken off.
   for (std::size_t k = 0; k < measured.size(); ++k) off.push_back(0.0);
   Column left_before;
   double part = kFirstPart;
+  int failures = 0;
   for (int round = 0; round < kMostRounds; ++round) {
     const TestEstimates& present = found ? *found : seen;
-    if (present.fitted.empty()) return std::nullopt;
+    if (present.fitted.empty() || failures > kMostFailures) return std::nullopt;
     const Column added = distortion(trace, present.fitted);
     Column left{scratch_folder_};
     double along = 0.0;
@@ -216,8 +229,12 @@ std::optional<TestEstimates> ThroughTransducer::estimate(const estimate::Trace& 
     off = std::move(now);
     left_before = std::move(left);
     TestEstimates next = fit(with_values(trace, std::move(force)));
-    const bool is_settled = moved(present, next, &TestResults::delta_mu) < kSettled &&
-                            moved(present, next, &TestResults::mu_k) < kSettled;
+    if (!next.model_describes) ++failures;
+    const double enough = kSettled * std::min(part, 1.0);
+    const bool is_settled = (along < 0.0 || round == 0) &&
+                            moved(present, next, &TestResults::mu_k) < enough &&
+                            moved(present, next, &TestResults::omega) < enough &&
+                            (moved(present, next, &TestResults::delta_mu) < enough || is_a_bound(next));
     found = std::move(next);
     if (is_settled) return found;
   }

@@ -2,9 +2,7 @@
 /// Fits slips that are seen through a known transducer: takes off the trace what the transducer adds to them.
 ///
 ///     const ThroughTransducer through{transducer, 1.0 / 350.0, scratch_folder};
-///     auto found = through.estimate(trace, seen, fit);
-///     if (found && through.widen_errors(trace, *found, sigma, fit)) trace.value = through.force(trace,
-///     *found);
+///     if (auto found = through.estimate(trace, seen, fit)) trace.value = through.force(trace, *found);
 #pragma once
 
 #include <cstddef>
@@ -31,6 +29,9 @@ class ThroughTransducer {
  public:
   /// Estimates of a trace, with TestEstimates::fitted.
   using Fit = std::function<TestEstimates(const estimate::Trace&)>;
+  /// Slips of the longest test that is corrected: some 20 fits of it take less time than the scans that wait
+  /// for the end of a test may.
+  static constexpr std::size_t kMostSlips = 4096;
   /// Slips from which the errors are learnt.
   static constexpr std::size_t kMostSlipsOfErrors = 128;
 
@@ -41,8 +42,8 @@ class ThroughTransducer {
 
   /// The slips whose image through the transducer is the trace: those that are fitted to the trace less what
   /// the transducer adds to them, found in rounds. Times stay those of the trace, in which all is late by the
-  /// transducer's lag. \param seen  fit(trace). \return nullopt if a fit does not converge or the rounds do
-  /// not settle.
+  /// transducer's lag. \param seen  fit(trace). \return nullopt if the rounds do not settle, or the
+  /// lag is more than a fifth of an oscillation.
   [[nodiscard]] std::optional<TestEstimates> estimate(const estimate::Trace& trace, const TestEstimates& seen,
                                                       const Fit& fit) const;
 

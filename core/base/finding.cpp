@@ -89,8 +89,12 @@ constexpr std::array<FindingKind, kFindingCodes> kKinds{{
      "read the reason, and use S - K with the uncertainty given"},
     {kMisfit, "misfit", "misfit", kWarning,
      "The fit leaves residuals larger than the noise, or the same in each slip",
-     "look for the cause named; state a load cell or filter that it is (load_cell_frequency, anti_alias); "
+     "look for the cause named; if it is the load cell or a filter, state it (load_cell_frequency, "
+     "anti_alias); "
      "else use S - K with the uncertainty given"},
+    {kTransducerShows, "transducer-shows", "misfit", kWarning,
+     "The load cell and filter that are stated are not taken off the trace",
+     "check their frequencies; import or record a part of the test; S and K are as read"},
     {kLevelDrift, "level-drift", "consistency", kNote, "S and K drift along the track",
      "look at the cycles: S and K are means over this stretch"},
     {kSlack, "slack", "consistency", kWarning,

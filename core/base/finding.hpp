@@ -58,6 +58,7 @@ enum class FindingCode : std::uint8_t {
   kRateUnchecked,
   kNotFitted,
   kMisfit,
+  kTransducerShows,
   kLevelDrift,
   kSlack,
   kTesterChanged,

@@ -38,8 +38,8 @@ struct WorkLimits {
 [[nodiscard]] WorkLimits limits_for_file(std::uint64_t size);
 
 /// Bytes of an answer at most: a damaged or malicious file may make the child say anything. The longest of
-/// this program, the findings about a damaged journal, have some hundred bytes for each place.
-inline constexpr std::uint64_t kLongestAnswer = 64'000'000;
+/// this program, verdicts, have some hundred bytes for each gap and each damaged place: ten million of them.
+inline constexpr std::uint64_t kLongestAnswer = 1'000'000'000;
 
 /// Work of the child: returns a short answer to a question and writes long data into the memory file, a
 /// descriptor of a file that is empty when the question comes. An exception ends the child.

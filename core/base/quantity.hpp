@@ -59,7 +59,7 @@ inline constexpr Dimension kLastDimension = Dimension::kTemperature;
 /// has some. A dimensionless number needs none.
 enum class BareNumber {
   kRefused,        ///< Refused, as in configuration files.
-  kOnlyZero,       ///< Refused but for 0; 0 too for a temperature, whose units have different zeros.
+  kOnlyZero,       ///< Refused but for 0, which without a unit is no temperature.
   kSiWithWarning,  ///< Read in the SI unit, as version 0.1 did; EnteredQuantity::warning says so.
   kSi,             ///< Read in the SI unit, as the entry's help says.
 };

@@ -16,8 +16,8 @@ namespace stickslip::detect {
 /// smaller limit would hide (docs/detector-limits.md).
 inline constexpr double kChoiceLimit = 3.0;
 
-/// Change of the cost, in units of log-likelihood, below which fit_free() and
-/// fit_captured() have converged.
+/// Change of the cost, in units of log-likelihood, below which fit_free() and fit_captured() have
+/// converged.
 inline constexpr double kCostConverged = 1e-2;
 
 /// Normal equations of rows about a free oscillation, in scalars, which is faster for three parameters.

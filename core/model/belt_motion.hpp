@@ -24,7 +24,7 @@ class BeltMotion {
   /// Constant belt, p = 1.
   BeltMotion() = default;
   /// \param start_s  time of the trace at which the belt started. \param end_s  of the trace; only
-  /// has_one_speed() asks for it. Before the last point of the plan: that point.
+  /// has_one_speed() asks for it. If it is earlier than the last point of the plan, that point counts.
   BeltMotion(PullSpeed plan, double start_s, double end_s = -kForEver);
 
   /// Has no plan. A plan of one speed is not constant: the belt rests before it.

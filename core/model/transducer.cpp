@@ -9,7 +9,7 @@ namespace stickslip::model {
 
 bool Transducer::is_valid() const noexcept {
   const auto is_frequency = [](double frequency_Hz) {
-    return frequency_Hz > 0.0 && std::isfinite(frequency_Hz);
+    return frequency_Hz >= kSlowestTransducer_Hz && frequency_Hz <= kFastestTransducer_Hz;
   };
   const bool cell_is_valid =
       !load_cell || (is_frequency(load_cell->frequency_Hz) && load_cell->damping_ratio >= 0.0 &&

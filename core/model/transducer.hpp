@@ -32,6 +32,10 @@ inline constexpr double kTypicalCellDamping = 0.05;
 /// Largest damping ratio of a load cell that can be stated for a fit: above it a cell does not ring.
 inline constexpr double kLargestCellDamping = 0.99;
 
+/// Frequencies of a transducer that can be stated for a fit.
+inline constexpr double kSlowestTransducer_Hz = 0.1;
+inline constexpr double kFastestTransducer_Hz = 1e6;
+
 /// What lies between the force and its samples, as far as it is known.
 struct Transducer {
   std::optional<LoadCellDynamics> load_cell;

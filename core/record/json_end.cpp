@@ -189,7 +189,7 @@ void read_true_tables(const Json& truth, TableReader& table, model::TestTruth& t
   }
 }
 
-/// A newer program appends its columns behind those that this one knows, which are skipped.
+/// Columns behind the known ones are those of a newer program, and are skipped.
 /// \param object  of the end.
 void read_tables(const Json& object, TableReader table, EndRecord& end) {
   const auto columns = object.value("cycle_columns", kFirstCycleColumns);

@@ -115,6 +115,10 @@ class Follower {
       }
     }
     for (; next != known.end(); ++next) gone.push_back(next->file);
+    // One that another search found after the folder was listed is there.
+    std::erase_if(gone, [&](const std::string& file) {
+      return Looker{}.look_at((folder_ / file).native()).error == 0;
+    });
     found.followed.read_count = pending.size();
     found.followed.removed_count = gone.size();
     if (!gone.empty() || !refused.empty()) {

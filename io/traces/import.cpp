@@ -465,29 +465,30 @@ class Importer {
 
 /// The first option that says what a table of stickslip export says itself; nullptr if there is none.
 const char* needless_option(const ImportRequest& request) {
-  const std::array stated{std::pair{"--unit", !request.unit.empty()},
-                          std::pair{"--time-column", !request.time_column.empty()},
-                          std::pair{"--time-unit", !request.time_unit.empty()},
-                          std::pair{"--rate", request.rate_Hz.has_value()},
-                          std::pair{"--invert", request.invert},
-                          std::pair{"--reverse", request.reverse},
-                          std::pair{"--resample", request.resample},
-                          std::pair{"--skip-doubled", request.skip_doubled},
-                          std::pair{"--sled-mass", request.tester.sled_mass_kg.has_value()},
-                          std::pair{"--speed", request.tester.pull_speed_m_per_s.has_value()},
-                          std::pair{"--stiffness", request.tester.stiffness_N_per_m.has_value()},
-                          std::pair{"--load-cell-frequency", request.tester.load_cell_frequency_Hz.has_value()},
-                          std::pair{"--anti-alias", request.tester.anti_alias_Hz.has_value()},
-                          std::pair{"--count-range", request.counts.has_value()},
-                          std::pair{"--load-cell-gain", request.load_cell.has_value()},
-                          std::pair{"--sample", !request.sample.name.empty()},
-                          std::pair{"--grade", !request.sample.grade.empty()},
-                          std::pair{"--operator", !request.sample.operator_name.empty()},
-                          std::pair{"--replicate", request.sample.replicate.has_value()},
-                          std::pair{"--encoding", request.dialect.encoding.has_value()},
-                          std::pair{"--separator", request.dialect.separator.has_value()},
-                          std::pair{"--decimal", request.dialect.decimal.has_value()},
-                          std::pair{"--skip", request.dialect.skip > 0}};
+  const std::array stated{
+      std::pair{"--unit", !request.unit.empty()},
+      std::pair{"--time-column", !request.time_column.empty()},
+      std::pair{"--time-unit", !request.time_unit.empty()},
+      std::pair{"--rate", request.rate_Hz.has_value()},
+      std::pair{"--invert", request.invert},
+      std::pair{"--reverse", request.reverse},
+      std::pair{"--resample", request.resample},
+      std::pair{"--skip-doubled", request.skip_doubled},
+      std::pair{"--sled-mass", request.tester.sled_mass_kg.has_value()},
+      std::pair{"--speed", request.tester.pull_speed_m_per_s.has_value()},
+      std::pair{"--stiffness", request.tester.stiffness_N_per_m.has_value()},
+      std::pair{"--load-cell-frequency", request.tester.load_cell_frequency_Hz.has_value()},
+      std::pair{"--anti-alias", request.tester.anti_alias_Hz.has_value()},
+      std::pair{"--count-range", request.counts.has_value()},
+      std::pair{"--load-cell-gain", request.load_cell.has_value()},
+      std::pair{"--sample", !request.sample.name.empty()},
+      std::pair{"--grade", !request.sample.grade.empty()},
+      std::pair{"--operator", !request.sample.operator_name.empty()},
+      std::pair{"--replicate", request.sample.replicate.has_value()},
+      std::pair{"--encoding", request.dialect.encoding.has_value()},
+      std::pair{"--separator", request.dialect.separator.has_value()},
+      std::pair{"--decimal", request.dialect.decimal.has_value()},
+      std::pair{"--skip", request.dialect.skip > 0}};
   const auto* const found =
       std::find_if(stated.begin(), stated.end(), [](const auto& option) { return option.second; });
   return found == stated.end() ? nullptr : found->first;

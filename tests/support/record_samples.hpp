@@ -84,7 +84,7 @@ inline record::RecordHeader sample_header() {
                         {1e-5, 2e-5, 3e-5},
                         {0.0, 1e-6, -2e-6},
                         {"", "", "unsteady"}};
-  header.tester = {2.331, 9.81, 0.00508, 4200.0, "0:0.00508 2.5:0.0101"};
+  header.tester = {2.331, 9.81, 0.00508, 4200.0, "0:0.00508 2.5:0.0101", 120.0, 0.04, 60.0, 3};
   header.sample = {"linerboard 42", "kraft", "MD", "wire", 3, 2, "20261122T180301Z", "Ada", {}};
   header.process = {"stickslipd",
                     "0.1.0",

@@ -138,14 +138,14 @@ TEST(LimitedChildTest, LimitsGrowWithTheFile) {
 
 // A child that a malicious file has taken over may claim any size.
 TEST(LimitedChildTest, AnAnswerLongerThanTheLimitIsRefusedBeforeRoomIsMadeForIt) {
-  for (const char* claim : {R"(printf '\377\377\377\377\377\377\377\177' >&0; sleep 60)",
-                            R"(printf '\001\220\320\003\000\000\000\000' >&0; sleep 60)"}) {
+  for (const char* claim : {R"(printf '\377\377\377\377\377\377\377\177' >&0; exec sleep 60)",
+                            R"(printf '\001\312\232\073\000\000\000\000' >&0; exec sleep 60)"}) {
     LimitedChild child{base::ChildProgram{"/bin/sh", {"-c", claim}}};
     const auto claimed = child.ask("how much", kEnough);
     ASSERT_FALSE(claimed);
     EXPECT_EQ(claimed.error().kind, ErrorKind::kUsage);
     EXPECT_TRUE(claimed.error().worker_died);
-    EXPECT_THAT(claimed.error().message, HasSubstr("bytes, at most 64000000 are taken"));
+    EXPECT_THAT(claimed.error().message, HasSubstr("bytes, at most 1000000000 are taken"));
   }
 }
 

@@ -1,0 +1,167 @@
+// A pull that is read through a load cell that rings or a slow filter: told the transducer, the fit finds the
+// truth within its own errors. The simulator's transducer is exact and shares no code with that of the fit.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/analysis/test_analysis.hpp"
+#include "core/sim/scene.hpp"
+#include "core/sim/scene_run.hpp"
+
+namespace stickslip::analysis {
+namespace {
+
+constexpr double kRate_Hz = 350.0;
+constexpr double kS = 0.35;
+constexpr double kK = 0.30;
+constexpr double kIdle_s = 0.5;
+constexpr double kOmega = 2.0 * std::numbers::pi * 20.0;
+
+struct Case {
+  const char* name;
+  model::Transducer transducer;
+  std::string effect;
+};
+
+const Case kCell{"cell",
+                 {model::LoadCellDynamics{120.0, 0.05}, {}},
+                 "[effects.load_cell]\nfrequency = \"120 Hz\"\ndamping_ratio = 0.05\n"};
+const Case kFilter{"filter",
+                   {{}, model::AntiAlias{60.0, 4}},
+                   "[effects.anti_alias]\nkind = \"butterworth\"\ncutoff = \"60 Hz\"\norder = 4\n"};
+const Case kBoth{
+    "both",
+    {kCell.transducer.load_cell, model::AntiAlias{100.0, 3}},
+    kCell.effect + "[effects.anti_alias]\nkind = \"butterworth\"\ncutoff = \"100 Hz\"\norder = 3\n"};
+
+std::vector<double> pulled(const Case& seen, double pull_s, std::uint64_t seed) {
+  const std::string text = fmt::format(
+      "description = \"transducer\"\nscan_rate = \"{} Hz\"\n[tester]\nsled_mass = \"2.331 kg\"\n"
+      "gravity = \"9.80665 m/s^2\"\nfrequency = \"20 Hz\"\nload_cell_gain = \"22.85930115 N/V\"\n"
+      "[paper]\nmu_s = {}\nmu_k = {}\n[effects.damping]\ngamma_over_2omega = 0.022\n"
+      "[effects.constant_speed]\nidle = \"{} s\"\npull_speed = \"12 in/min\"\npull = \"{} s\"\n"
+      "stop = \"0 s\"\nreturn_speed = \"12 in/min\"\nreturn = \"0.01 s\"\nrest = \"0 s\"\n"
+      "[effects.white_noise]\nsd = 0.001\n{}",
+      kRate_Hz, kS, kK, kIdle_s, pull_s, seen.effect);
+  const auto scene = sim::parse_scene(text, "transducer_correction_test.cpp");
+  if (!scene) throw std::runtime_error(scene.error().message);
+  sim::SceneRun run{*scene, scene->scan_rate_Hz};
+  run.restart(seed);
+  std::vector<double> values;
+  std::array<double, 64> raw{};
+  while (const std::size_t count = run.next(raw))
+    values.insert(values.end(), raw.begin(), raw.begin() + count);
+  values.resize(static_cast<std::size_t>((kIdle_s + pull_s) * kRate_Hz));
+  return values;
+}
+
+TestResults analysed(const std::vector<double>& values, const AnalysisSettings& settings) {
+  TestAnalysis analysis{settings};
+  for (std::size_t k = 0; k < values.size(); ++k)
+    analysis.add(static_cast<base::ScanIndex>(k), values[k], false);
+  return analysis.finish();
+}
+
+AnalysisSettings told(const model::Transducer& transducer) {
+  AnalysisSettings settings;
+  settings.scan_rate_Hz = kRate_Hz;
+  settings.tester.pull_speed_m_per_s = 12.0 * 0.0254 / 60.0;
+  settings.tester.transducer = transducer;
+  return settings;
+}
+
+bool has_finding(const TestResults& results, base::FindingCode code) {
+  for (const base::Finding& finding : results.findings)
+    if (finding.code == base::kind_of(code).name) return true;
+  return false;
+}
+
+double z_of(const Estimate& estimate, double truth) {
+  return (*estimate.value - truth) / *estimate.standard_error;
+}
+
+class ThroughATransducer : public testing::TestWithParam<Case> {};
+
+TEST_P(ThroughATransducer, TheTruthIsFoundWithinTheErrorsOfTheFit) {
+  for (const std::uint64_t seed : {1, 2}) {
+    const std::vector<double> values = pulled(GetParam(), 4.0, seed);
+    const TestResults unknown = analysed(values, told({}));
+    ASSERT_TRUE(unknown.delta_mu.value);
+    // Untold, S - K is off by many of its errors, and the finding says so.
+    EXPECT_GT(std::abs(z_of(unknown.delta_mu, kS - kK)), 4.0);
+    EXPECT_TRUE(has_finding(unknown, base::FindingCode::kMisfit));
+    const TestResults known = analysed(values, told(GetParam().transducer));
+    EXPECT_FALSE(has_finding(known, base::FindingCode::kTransducerShows));
+    ASSERT_TRUE(known.delta_mu.standard_error && known.mu_k.standard_error);
+    for (const auto& [name, estimate, truth] :
+         {std::tuple{"S - K", known.delta_mu, kS - kK}, std::tuple{"K", known.mu_k, kK},
+          std::tuple{"omega", known.omega, kOmega},
+          std::tuple{"gamma/2omega", known.gamma_over_2omega, 0.022}}) {
+      std::printf("%s, seed %d: %s z %+.2f\n", GetParam().name, static_cast<int>(seed), name,
+                  z_of(estimate, truth));
+      EXPECT_LT(std::abs(z_of(estimate, truth)), 4.0) << name << ", seed " << seed;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, ThroughATransducer, testing::Values(kCell, kFilter, kBoth),
+                         [](const testing::TestParamInfo<Case>& seen) {
+                           return std::string{seen.param.name};
+                         });
+
+// More slips than errors are learnt from, columns in a file.
+TEST(TransducerCorrection, OfALongTestIsTheSameFromAFile) {
+  const std::vector<double> values = pulled(kCell, 12.0, 3);
+  AnalysisSettings settings = told(kCell.transducer);
+  const TestResults in_memory = analysed(values, settings);
+  settings.scratch_folder = std::filesystem::temp_directory_path();
+  settings.live = false;
+  const TestResults from_file = analysed(values, settings);
+  EXPECT_GT(*in_memory.cycle_count.value, 200.0);
+  EXPECT_LT(std::abs(z_of(in_memory.delta_mu, kS - kK)), 4.0);
+  EXPECT_EQ(in_memory.delta_mu.value, from_file.delta_mu.value);
+  EXPECT_EQ(in_memory.delta_mu.standard_error, from_file.delta_mu.standard_error);
+}
+
+// A filter whose lag is longer than a fifth of an oscillation, and an estimator without a fit.
+TEST(TransducerCorrection, ThatIsNotPossibleIsTold) {
+  const std::vector<double> values = pulled(kCell, 3.0, 4);
+  const TestResults too_slow = analysed(values, told({{}, model::AntiAlias{5.0, 4}}));
+  EXPECT_TRUE(has_finding(too_slow, base::FindingCode::kTransducerShows));
+  AnalysisSettings settings = told(kCell.transducer);
+  settings.estimator = detect::EstimatorTier::kTurningPoints;
+  EXPECT_TRUE(has_finding(analysed(values, settings), base::FindingCode::kTransducerShows));
+  EXPECT_FALSE(has_finding(analysed(values, told({})), base::FindingCode::kTransducerShows));
+}
+
+// A tester's damping that is known keeps the errors of the correction.
+TEST(TransducerCorrection, WidensTheErrorsOfATestWithACharacterisedTesterToo) {
+  const std::vector<double> values = pulled(kFilter, 4.0, 5);
+  const TestResults alone = analysed(values, told(kFilter.transducer));
+  AnalysisSettings settings = told(kFilter.transducer);
+  settings.prior.coupling.emplace();
+  settings.prior.coupling->omega = kOmega;
+  settings.prior.coupling->gamma_over_2omega = 0.022;
+  settings.prior.coupling->covariance = Eigen::Vector2d{0.01, 1e-6}.asDiagonal();
+  const TestResults with = analysed(values, settings);
+  ASSERT_TRUE(with.mu_k.standard_error);
+  EXPECT_LT(std::abs(z_of(with.mu_k, kK)), 4.0);
+  EXPECT_LT(std::abs(z_of(with.delta_mu, kS - kK)), 4.0);
+  EXPECT_GT(*alone.mu_k.standard_error, 3e-4);
+}
+
+}  // namespace
+}  // namespace stickslip::analysis
