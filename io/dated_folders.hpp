@@ -32,8 +32,8 @@ struct FilesFound {
 };
 
 /// Finds files in a folder and in its subfolders, `deepest` levels down. A folder that does not
-/// exist counts as empty. \param wanted  whether a file of this name is listed. Symbolic links to folders are not
-/// followed, and `lost+found` is skipped.
+/// exist counts as empty. \param wanted  whether a file of this name is listed. Symbolic links to folders are
+/// not followed, and `lost+found` is skipped.
 [[nodiscard]] FilesFound find_files(const std::filesystem::path& folder,
                                     const std::function<bool(std::string_view name)>& wanted,
                                     int deepest = kDeepestRecordFolder);

@@ -151,14 +151,16 @@ class TestAnalysis {
   /// μ′ of the paper over that of the characterisation, from the damping that the test alone has.
   [[nodiscard]] Estimate mu_slope(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
                                   double sigma, const TestEstimates& estimates) const;
-  /// Fills pull_speed_measured and the findings.
+  /// Fills pull_speed_measured, from the stick rate and ω₀, or tells why it has no value; adds the findings
+  /// of tester_check_, or kPullSpeed without it. If the sled may never have stuck, S and S − K become absent,
+  /// too. \param results  with K already.
   void speed_results(const estimate::Trace& trace, const TestEstimates& estimates,
                      TestResults& results) const;
   [[nodiscard]] SectionSettings section_settings() const;
-  /// From the highest rung of the fit that describes the test, after taking off the drift; if the test is not
-  /// described, what its fit left. With a characterised tester γ is the tester's, unless the test alone
-  /// contradicts it. Fills tester_ and tester_check_.
-  /// \param not_enough  called as soon as the fit is likely to need turning points beside it.
+  /// From the highest rung of the fit that describes the test; if none does, what the fit left. With a
+  /// characterised tester γ is the tester's, unless the test alone contradicts it. Sets the trace's drift,
+  /// takes a stated transducer off its values, and fills tester_ and tester_check_. \param not_enough  not
+  /// empty; called once at most, as soon as the fit is likely to need turning points beside it.
   [[nodiscard]] TestEstimates estimate(estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
                                        double sigma, const std::function<void()>& not_enough);
   /// Takes off the trace what the transducer adds to the slips, and replaces `estimates`, which are those of

@@ -91,10 +91,6 @@ struct LiveState {
   /// By the slip decided last: stick-slip, or ring-down, which becomes steady sliding when it has died away.
   /// Undecided until a slip is decided.
   model::Regime regime = model::Regime::kUndecided;
-  /// Onset of the slip that began the ring-down, the first not captured since the last capture or steady
-  /// sliding; its peak until its cycle closes, and if the onset is unknown. On the time axis of Cycle. NaN
-  /// unless the regime is ring-down.
-  double ring_down_since_s = std::numeric_limits<double>::quiet_NaN();
   std::int64_t slip_count = 0;      ///< Slips confirmed so far, with the one under way.
   std::optional<LiveCycle> latest;  ///< The cycle closed last.
 };

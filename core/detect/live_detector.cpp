@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/nan.hpp"
 #include "core/signal/statistics.hpp"
 
 namespace stickslip::detect {
@@ -57,7 +56,6 @@ std::optional<LiveCycle> LiveDetector::follow(const signal::DespikedScan& scan, 
   if (amplitude && amplitude->is_over()) {
     watch_.stop();
     state_.regime = model::Regime::kSteadySliding;
-    state_.ring_down_since_s = base::kNaN;
     return close();
   }
   return std::nullopt;
@@ -96,13 +94,8 @@ void LiveDetector::take_decision() noexcept {
   if (state_.phase == Phase::kFirstSlip) state_.phase = Phase::kCycles;
   if (follower_.captured()) {
     state_.regime = model::Regime::kStickSlip;
-    state_.ring_down_since_s = base::kNaN;
     watch_.stop();
     return;
-  }
-  if (state_.regime != model::Regime::kRingDown) {
-    const Cycle& cycle = follower_.slip().cycle;
-    state_.ring_down_since_s = cycle.peak_time_s;
   }
   state_.regime = model::Regime::kRingDown;
   if (!watch_.running())
@@ -119,9 +112,6 @@ std::optional<LiveCycle> LiveDetector::close() noexcept {
   // The scan's number in the acquisition is the caller's to add.
   cycle.first_scan = std::llround(cycle.peak_time_s * settings_.scan_rate_Hz);
   follower_.close();
-  // Its onset is known by now.
-  if (state_.ring_down_since_s == cycle.peak_time_s && std::isfinite(cycle.onset_time_s))
-    state_.ring_down_since_s = cycle.onset_time_s;
   state_.latest = closed;
   return closed;
 }

@@ -70,7 +70,7 @@ TEST(Config, ShippedFileShowsTheDefaults) {
   const std::regex key{R"(^# ([a-z_]+ = .*))"};
   // These have no default, or one that cannot be written.
   const std::regex example{
-      R"(^# (scan_rate|file|hanging|board|serial|bus_path|subdevice|pull_speed|stiffness|anti_alias|load_cell_frequency|socket|speed_gain|speed_channel|position_gain|position_channel|load_cell_gain|sled_mass|gravity|load_cell_zero|characterisation|replicate|broker|tester|user|password_file|ca_file|certificate_file|key_file) = .*|^# calibration = "calibrations".*)"};
+      R"(^# (scan_rate|file|hanging|board|serial|bus_path|subdevice|pull_speed|stiffness|anti_alias|anti_alias_order|load_cell_frequency|load_cell_damping|socket|speed_gain|speed_channel|position_gain|position_channel|load_cell_gain|sled_mass|gravity|load_cell_zero|characterisation|replicate|broker|tester|user|password_file|ca_file|certificate_file|key_file) = .*|^# calibration = "calibrations".*)"};
   for (std::string line; std::getline(in, line);) {
     std::smatch match;
     const bool is_default = std::regex_match(line, match, key) && !std::regex_match(line, example);
@@ -135,7 +135,9 @@ TEST(Config, TransducerIsThatOfTheFileElseOfTheRecord) {
   recorded.transducer.load_cell = {80.0, 0.02};
   EXPECT_EQ(config.bench.tester(recorded).transducer.load_cell->frequency_Hz, 120.0);
   EXPECT_EQ(read(kGood)->bench.tester(recorded).transducer.load_cell->frequency_Hz, 80.0);
-  EXPECT_FALSE(read(kGood + "[tester]\nload_cell_damping = 1\n"));
+  EXPECT_FALSE(read(kGood + "[tester]\nload_cell_frequency = \"120 Hz\"\nload_cell_damping = 1\n"));
+  EXPECT_FALSE(read(kGood + "[tester]\nload_cell_damping = 0.05\n")) << "of which cell?";
+  EXPECT_FALSE(read(kGood + "anti_alias_order = 4\n")) << "of which filter?";
   EXPECT_FALSE(read(kGood + "[tester]\nload_cell_frequency = \"0 Hz\"\n"));
 }
 
