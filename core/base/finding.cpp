@@ -77,7 +77,8 @@ constexpr std::array<FindingKind, kFindingCodes> kKinds{{
     {kCalibrationExpired, "calibration-expired", "calibration", kWarning,
      "The calibration of the load cell had expired", "calibrate: stickslip calibrate"},
     {kCalibrationLine, "calibration-line", "calibration", kWarning,
-     "The readings of a calibration lie more than 0.2 % off a line", "check each mass, and calibrate again"},
+     "The readings of a calibration scatter about a line by more than 0.2 % of the largest change",
+     "check each mass, and calibrate again"},
     {kCalibrationHysteresis, "calibration-hysteresis", "calibration", kWarning,
      "Readings under falling load differ by more than 0.2 % from those under rising load",
      "tighten the cell's mounting, and calibrate again"},
@@ -90,8 +91,7 @@ constexpr std::array<FindingKind, kFindingCodes> kKinds{{
     {kMisfit, "misfit", "misfit", kWarning,
      "The fit leaves residuals larger than the noise, or the same in each slip",
      "look for the cause named; if it is the load cell or a filter, state it (load_cell_frequency, "
-     "anti_alias); "
-     "else use S - K with the uncertainty given"},
+     "anti_alias); else use S - K with the uncertainty given"},
     {kTransducerShows, "transducer-shows", "misfit", kWarning,
      "The load cell and filter that are stated are not taken off the trace",
      "check their frequencies; import or record a part of the test; S and K are as read"},
