@@ -561,7 +561,7 @@ std::optional<ErrorFactors> TestAnalysis::take_off_transducer(estimate::Trace& t
       own.push_back(slips[i]);
     return own.empty() ? TestEstimates{} : fit(of, own);
   };
-  const std::optional<ErrorFactors> factors = through.error_factors(trace, *found, sigma, fit_own);
+  std::optional<ErrorFactors> factors = through.error_factors(trace, *found, sigma, fit_own);
   if (!factors) return std::nullopt;
   trace.value = through.force(trace, *found);
   estimates = *std::move(found);

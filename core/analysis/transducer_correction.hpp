@@ -51,7 +51,7 @@ class ThroughTransducer {
   /// slips found with noise; the random stream is always the same. The transducer hides a part of the slips.
   /// \param found  of estimate(). \param sigma  noise of a scan. \param fit  of a trace that may end after
   /// kMostSlipsOfErrors slips. \return nullopt if estimate() seldom settles with other noise.
-  [[nodiscard]] std::optional<ErrorFactors> error_factors(const estimate::Trace& trace,
+  [[nodiscard]] std::optional<ErrorFactors> error_factors(const estimate::Trace& whole,
                                                           const TestEstimates& found, double sigma,
                                                           const Fit& fit) const;
 

@@ -96,7 +96,7 @@ double z_of(const Estimate& estimate, double truth) {
 class ThroughATransducer : public testing::TestWithParam<Case> {};
 
 TEST_P(ThroughATransducer, TheTruthIsFoundWithinTheErrorsOfTheFit) {
-  for (const std::uint64_t seed : {1, 2}) {
+  for (const std::uint64_t seed : {std::uint64_t{1}, std::uint64_t{2}}) {
     const std::vector<double> values = pulled(GetParam(), 4.0, seed);
     const TestResults unknown = analysed(values, told({}));
     ASSERT_TRUE(unknown.delta_mu.value);
@@ -151,10 +151,8 @@ TEST(TransducerCorrection, ThatIsNotPossibleIsTold) {
 TEST(TransducerCorrection, WidensTheErrorsOfATestWithACharacterisedTesterToo) {
   const std::vector<double> values = pulled(kFilter, 4.0, 5);
   AnalysisSettings settings = told(kFilter.transducer);
-  settings.prior.coupling.emplace();
-  settings.prior.coupling->omega = kOmega;
-  settings.prior.coupling->gamma_over_2omega = 0.022;
-  settings.prior.coupling->covariance = Eigen::Vector2d{0.01, 1e-6}.asDiagonal();
+  settings.prior.coupling =
+      estimate::SharedPrior::Coupling{kOmega, 0.022, Eigen::Vector2d{0.01, 1e-6}.asDiagonal()};
   const TestResults known = analysed(values, settings);
   settings.tester.transducer = {};
   const TestResults unknown = analysed(values, settings);
