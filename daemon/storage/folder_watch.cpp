@@ -41,7 +41,8 @@ std::optional<FolderWatch::Away> FolderWatch::look() {
         fmt::format("see to it that {} is a folder that the daemon may read and write", folder_.string())};
   }
   if (devices_.empty() || now.front() == devices_.front()) {
-    devices_ = std::move(now);
+    // The way up may end early, as when the file system goes meanwhile: what is above it stays known.
+    if (now.size() >= devices_.size()) devices_ = std::move(now);
     return std::nullopt;
   }
   if (std::find(devices_.begin() + 1, devices_.end(), now.front()) != devices_.end()) {

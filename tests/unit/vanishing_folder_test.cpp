@@ -257,6 +257,37 @@ TEST_F(StorageAstray, AFolderThatIsRemovedInMidTestIsMadeAgain) {
   expect_all_recorded();
 }
 
+/// The folder is on a device of its own, until it is unmounted; the way up can be blocked.
+class BlockedDisk final : public test::ForwardingCalls {
+ public:
+  int lstat(const char* path, struct ::stat* found) const override {
+    const bool is_above = std::string_view{path}.find("..") != std::string_view::npos;
+    if (is_above && blocked) {
+      errno = ESTALE;
+      return -1;
+    }
+    found->st_ino = is_above ? 1 : 2;
+    found->st_dev = is_above || !mounted ? 1 : 2;
+    return 0;
+  }
+  bool mounted = true;
+  bool blocked = false;
+};
+
+// A file system that goes while its folder is looked at.
+TEST(FolderWatch, KnowsWhatIsAboveTheFolderAlsoIfTheWayUpWasBlockedOnce) {
+  BlockedDisk disk;
+  FolderWatch watch{"records", disk};
+  EXPECT_FALSE(watch.look());
+  disk.blocked = true;
+  EXPECT_FALSE(watch.look());
+  disk.blocked = false;
+  disk.mounted = false;
+  const auto away = watch.look();
+  ASSERT_TRUE(away);
+  EXPECT_THAT(away->why, testing::EndsWith("not mounted any more"));
+}
+
 TEST_F(StorageAstray, NothingIsWrittenBelowAMountThatWentAway) {
   disk_.mount(folder_ / "disk", kOtherDevice);
   open();
