@@ -75,11 +75,11 @@ const std::vector<std::pair<std::string, Change>>& effects() {
       // Transducer, sampling and signal stage.
       {"load_cell",
        [](Scene& scene) {
-         scene.load_cell_dynamics = model::LoadCellDynamics{300.0, 0.02};
+         scene.load_cell_dynamics = stickslip::model::LoadCellDynamics{300.0, 0.02};
        }},
       {"anti_alias",
        [](Scene& scene) {
-         scene.anti_alias = model::AntiAlias{100.0, 4};
+         scene.anti_alias = stickslip::model::AntiAlias{100.0, 4};
        }},
       {"clock_rate_error", [](Scene& scene) { scene.clock_rate_error = ClockRateError{2e-4}; }},
       {"clock_jitter", [](Scene& scene) { scene.clock_jitter = ClockJitter{5e-5}; }},
