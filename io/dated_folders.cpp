@@ -1,6 +1,7 @@
 #include "io/dated_folders.hpp"
 
 #include <dirent.h>
+#include <fcntl.h>
 #include <sys/stat.h>
 
 #include <algorithm>
