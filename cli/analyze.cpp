@@ -121,12 +121,7 @@ base::Result<std::string> run_analyze(const AnalyzeOptions& options) {
           file, detect::name(*tier));
     }
     if (!options.method.empty()) process.method = record::method_text(*method);
-    if (!transducer->is_ideal()) {
-      model::Transducer own = record->header.tester.tester().transducer;
-      if (transducer->load_cell) own.load_cell = transducer->load_cell;
-      if (transducer->anti_alias) own.anti_alias = transducer->anti_alias;
-      record->header.tester.set_transducer(own);
-    }
+    record->header.tester.set_transducer(*transducer);
     if (*skipped) process.kept = analysis::text_of(**skipped);
     base::Result<evaluation::TesterAnalysis> analysed = evaluation::analyse_with_tester(*record, prior);
     if (!analysed) {

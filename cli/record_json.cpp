@@ -1,5 +1,7 @@
 #include "cli/record_json.hpp"
 
+#include <fmt/format.h>
+
 #include "io/results_json.hpp"
 #include <nlohmann/json.hpp>
 
@@ -28,6 +30,15 @@ Json facts_of(const record::RecordHeader& header) {
   put("operator", header.sample.operator_name);
   put("method", header.process.method);
   put("source_file", header.process.source_file);
+  const model::Transducer transducer = header.tester.tester().transducer;
+  if (transducer.load_cell) {
+    put("load_cell", fmt::format("{:.6g} Hz, damping {:.3g}", transducer.load_cell->frequency_Hz,
+                                 transducer.load_cell->damping_ratio));
+  }
+  if (transducer.anti_alias) {
+    put("anti_alias",
+        fmt::format("{:.6g} Hz, order {}", transducer.anti_alias->cutoff_Hz, transducer.anti_alias->order));
+  }
   return facts;
 }
 

@@ -4,10 +4,12 @@
 
 #include <cmath>
 #include <optional>
+#include <string_view>
+
+#include "cli/options.hpp"
 
 #include "core/base/quantity.hpp"
-#include "core/base/text.hpp"
-#include "core/base/wording.hpp"
+#include "core/base/settings.hpp"
 
 namespace stickslip::cli {
 namespace {
@@ -15,24 +17,14 @@ namespace {
 using base::Dimension;
 using base::Result;
 
-/// Nothing if `text` is empty.
-Result<std::optional<double>> frequency_of(const char* option, const std::string& text) {
-  if (text.empty()) return std::optional<double>{};
-  const Result<double> frequency_Hz = base::parse_quantity(text, Dimension::kFrequency);
-  if (!frequency_Hz) return base::usage_error("{}: {}", option, frequency_Hz.error().message);
-  if (!(*frequency_Hz >= model::kSlowestTransducer_Hz && *frequency_Hz <= model::kFastestTransducer_Hz)) {
-    return base::usage_error("{} {}: must be {} Hz to {} MHz", option, base::one_line(text, 40),
-                             model::kSlowestTransducer_Hz, 1e-6 * model::kFastestTransducer_Hz);
-  }
-  return std::optional{*frequency_Hz};
-}
-
-/// The fallback if `text` is empty.
-Result<double> number_of(const char* option, const std::string& text, double fallback) {
-  if (text.empty()) return fallback;
-  const Result<double> number = base::parse_quantity(text, Dimension::kDimensionless);
-  if (!number) return base::usage_error("{}: {}", option, number.error().message);
-  return *number;
+/// number_of() within limits; no frequency without its unit.
+Result<std::optional<double>> number_within(const char* option, const std::string& text, Dimension dimension,
+                                            const base::Limits& limits) {
+  const auto number = number_of(option, text, dimension, false, base::BareNumber::kRefused);
+  if (!number || !*number || limits.allow(**number)) return number;
+  const std::string_view unit = base::si_unit(dimension);
+  return base::usage_error("{} {}: must be {} to {}{}", option, text, limits.min, limits.max,
+                           unit == "1" ? "" : fmt::format(" {}", unit));
 }
 
 }  // namespace
@@ -52,30 +44,31 @@ void add_transducer_options(CLI::App& command, TransducerOptions& options) {
 }
 
 Result<model::Transducer> stated_transducer(const TransducerOptions& options) {
-  const auto cell_Hz = frequency_of("--load-cell-frequency", options.load_cell_frequency);
+  const base::Limits frequencies =
+      base::Limits::between(model::kSlowestTransducer_Hz, model::kFastestTransducer_Hz);
+  const auto cell_Hz =
+      number_within("--load-cell-frequency", options.load_cell_frequency, Dimension::kFrequency, frequencies);
   if (!cell_Hz) return tl::unexpected(cell_Hz.error());
-  const auto filter_Hz = frequency_of("--anti-alias", options.anti_alias);
-  if (!filter_Hz) return tl::unexpected(filter_Hz.error());
-  if (!options.load_cell_damping.empty() && !*cell_Hz)
-    return base::usage_error("--load-cell-damping needs --load-cell-frequency, such as \"120 Hz\"");
-  if (!options.anti_alias_order.empty() && !*filter_Hz)
-    return base::usage_error("--anti-alias-order needs --anti-alias, such as \"60 Hz\"");
   const auto damping =
-      number_of("--load-cell-damping", options.load_cell_damping, model::kTypicalCellDamping);
+      number_within("--load-cell-damping", options.load_cell_damping, Dimension::kDimensionless,
+                    base::Limits::between(0.0, model::kLargestCellDamping));
   if (!damping) return tl::unexpected(damping.error());
-  if (!(*damping >= 0.0 && *damping <= model::kLargestCellDamping)) {
-    return base::usage_error("--load-cell-damping {}: must be 0 to {}",
-                             base::one_line(options.load_cell_damping, 40), model::kLargestCellDamping);
-  }
-  const auto order = number_of("--anti-alias-order", options.anti_alias_order, model::kTypicalFilterOrder);
+  const auto filter_Hz =
+      number_within("--anti-alias", options.anti_alias, Dimension::kFrequency, frequencies);
+  if (!filter_Hz) return tl::unexpected(filter_Hz.error());
+  const auto order = number_within("--anti-alias-order", options.anti_alias_order, Dimension::kDimensionless,
+                                   base::Limits::between(1.0, model::AntiAlias::kHighestOrder));
   if (!order) return tl::unexpected(order.error());
-  if (*order != std::floor(*order) || *order < 1.0 || *order > model::AntiAlias::kHighestOrder) {
-    return base::usage_error("--anti-alias-order {}: must be a whole number of 1 to {}",
-                             base::one_line(options.anti_alias_order, 40), model::AntiAlias::kHighestOrder);
-  }
+  if (*order && **order != std::floor(**order))
+    return base::usage_error("--anti-alias-order {}: must be a whole number", options.anti_alias_order);
+  if (*damping && !*cell_Hz)
+    return base::usage_error("--load-cell-damping needs --load-cell-frequency, such as \"120 Hz\"");
+  if (*order && !*filter_Hz)
+    return base::usage_error("--anti-alias-order needs --anti-alias, such as \"60 Hz\"");
   model::Transducer transducer;
-  if (*cell_Hz) transducer.load_cell = {**cell_Hz, *damping};
-  if (*filter_Hz) transducer.anti_alias = {**filter_Hz, static_cast<int>(*order)};
+  if (*cell_Hz) transducer.load_cell = {**cell_Hz, damping->value_or(model::kTypicalCellDamping)};
+  if (*filter_Hz)
+    transducer.anti_alias = {**filter_Hz, static_cast<int>(order->value_or(model::kTypicalFilterOrder))};
   return transducer;
 }
 

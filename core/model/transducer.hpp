@@ -49,6 +49,8 @@ struct Transducer {
 
 /// What a transducer shows of a force that is known at equal steps and straight between them. What one
 /// section of the transducer hands to the next counts as straight, too: exact for a single section.
+/// The simulator has one of its own (core/sim/transducer.hpp), exact for closed forms, by which fits are
+/// judged.
 class TransducerResponse {
  public:
   /// \param step_s  > 0.

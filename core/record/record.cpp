@@ -56,8 +56,6 @@ TesterFacts TesterFacts::of(const model::Tester& tester) {
 }
 
 void TesterFacts::set_transducer(const model::Transducer& transducer) {
-  load_cell_frequency_Hz = load_cell_damping = anti_alias_Hz = std::nullopt;
-  anti_alias_order = std::nullopt;
   if (transducer.load_cell) {
     load_cell_frequency_Hz = transducer.load_cell->frequency_Hz;
     load_cell_damping = transducer.load_cell->damping_ratio;

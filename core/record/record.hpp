@@ -60,6 +60,7 @@ struct TesterFacts {
   std::optional<std::int64_t> anti_alias_order;
 
   [[nodiscard]] static TesterFacts of(const model::Tester& tester);
+  /// Sets the parts that it has; the others stay.
   void set_transducer(const model::Transducer& transducer);
   /// Conversion. An absent mass or gravity becomes model::Tester's default; absent speed and stiffness stay
   /// absent, as does a course that cannot be parsed. A transducer whose numbers are out of range counts as

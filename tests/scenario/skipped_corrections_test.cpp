@@ -6,49 +6,27 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/analysis/test_analysis.hpp"
-#include "core/sim/scene.hpp"
-#include "core/sim/scene_run.hpp"
+#include "tests/support/plain_pull.hpp"
 
 namespace stickslip::detect {
 namespace {
 
-constexpr double kRate_Hz = 350.0;
-constexpr double kIdle_s = 0.5;
+using test::PlainPull;
+constexpr double kRate_Hz = PlainPull::kRate_Hz;
+constexpr double kIdle_s = PlainPull::kIdle_s;
 constexpr double kPull_s = 3.0;
-constexpr double kNoise = 0.001;
+constexpr double kNoise = PlainPull::kNoise;
 constexpr double kK = 0.30;
 constexpr double kDeltaMu = 0.05;
 
-/// Coefficients of a pull at 12 in/min up to its end. \param effects  beside damping and noise, as in a
-/// scene.
 std::vector<double> pulled(double delta_mu, const std::string& effects) {
-  // A newton a volt over m g: a volt is the coefficient.
-  const std::string text = fmt::format(
-      "description = \"corrections\"\nscan_rate = \"{} Hz\"\n[tester]\nsled_mass = \"2.331 kg\"\n"
-      "gravity = \"9.80665 m/s^2\"\nfrequency = \"20 Hz\"\nload_cell_gain = \"22.85930115 N/V\"\n"
-      "[paper]\nmu_s = {}\nmu_k = {}\n[effects.damping]\ngamma_over_2omega = 0.022\n"
-      "[effects.constant_speed]\nidle = \"{} s\"\npull_speed = \"12 in/min\"\npull = \"{} s\"\n"
-      "stop = \"0 s\"\nreturn_speed = \"12 in/min\"\nreturn = \"0.01 s\"\nrest = \"0 s\"\n"
-      "[effects.white_noise]\nsd = {}\n{}",
-      kRate_Hz, kK + delta_mu, kK, kIdle_s, kPull_s, kNoise, effects);
-  const auto scene = sim::parse_scene(text, "skipped_corrections_test.cpp");
-  if (!scene) throw std::runtime_error(scene.error().message);
-  sim::SceneRun run{*scene, scene->scan_rate_Hz};
-  run.restart(3);
-  std::vector<double> values;
-  std::array<double, 64> raw{};
-  while (const std::size_t count = run.next(raw))
-    values.insert(values.end(), raw.begin(), raw.begin() + count);
-  values.resize(static_cast<std::size_t>((kIdle_s + kPull_s) * kRate_Hz));
-  return values;
+  return PlainPull{.K = kK, .delta_mu = delta_mu, .pull_s = kPull_s, .effects = effects}.coefficients();
 }
 
 struct Found {

@@ -1,16 +1,13 @@
 // A pull that is read through a load cell that rings or a slow filter: told the transducer, the fit finds the
 // truth within its own errors. The simulator's transducer is exact and shares no code with that of the fit.
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <numbers>
-#include <stdexcept>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -18,16 +15,13 @@
 #include <Eigen/Core>
 
 #include "core/analysis/test_analysis.hpp"
-#include "core/sim/scene.hpp"
-#include "core/sim/scene_run.hpp"
+#include "tests/support/plain_pull.hpp"
 
 namespace stickslip::analysis {
 namespace {
 
-constexpr double kRate_Hz = 350.0;
 constexpr double kS = 0.35;
 constexpr double kK = 0.30;
-constexpr double kIdle_s = 0.5;
 constexpr double kOmega = 2.0 * std::numbers::pi * 20.0;
 
 struct Case {
@@ -48,24 +42,8 @@ const Case kBoth{
     kCell.effect + "[effects.anti_alias]\nkind = \"butterworth\"\ncutoff = \"100 Hz\"\norder = 3\n"};
 
 std::vector<double> pulled(const Case& seen, double pull_s, std::uint64_t seed) {
-  const std::string text = fmt::format(
-      "description = \"transducer\"\nscan_rate = \"{} Hz\"\n[tester]\nsled_mass = \"2.331 kg\"\n"
-      "gravity = \"9.80665 m/s^2\"\nfrequency = \"20 Hz\"\nload_cell_gain = \"22.85930115 N/V\"\n"
-      "[paper]\nmu_s = {}\nmu_k = {}\n[effects.damping]\ngamma_over_2omega = 0.022\n"
-      "[effects.constant_speed]\nidle = \"{} s\"\npull_speed = \"12 in/min\"\npull = \"{} s\"\n"
-      "stop = \"0 s\"\nreturn_speed = \"12 in/min\"\nreturn = \"0.01 s\"\nrest = \"0 s\"\n"
-      "[effects.white_noise]\nsd = 0.001\n{}",
-      kRate_Hz, kS, kK, kIdle_s, pull_s, seen.effect);
-  const auto scene = sim::parse_scene(text, "transducer_correction_test.cpp");
-  if (!scene) throw std::runtime_error(scene.error().message);
-  sim::SceneRun run{*scene, scene->scan_rate_Hz};
-  run.restart(seed);
-  std::vector<double> values;
-  std::array<double, 64> raw{};
-  while (const std::size_t count = run.next(raw))
-    values.insert(values.end(), raw.begin(), raw.begin() + count);
-  values.resize(static_cast<std::size_t>((kIdle_s + pull_s) * kRate_Hz));
-  return values;
+  return test::PlainPull{.K = kK, .delta_mu = kS - kK, .pull_s = pull_s, .effects = seen.effect, .seed = seed}
+      .coefficients();
 }
 
 TestResults analysed(const std::vector<double>& values, const AnalysisSettings& settings) {
@@ -77,7 +55,7 @@ TestResults analysed(const std::vector<double>& values, const AnalysisSettings& 
 
 AnalysisSettings told(const model::Transducer& transducer) {
   AnalysisSettings settings;
-  settings.scan_rate_Hz = kRate_Hz;
+  settings.scan_rate_Hz = test::PlainPull::kRate_Hz;
   settings.tester.pull_speed_m_per_s = 12.0 * 0.0254 / 60.0;
   settings.tester.transducer = transducer;
   return settings;

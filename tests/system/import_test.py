@@ -263,6 +263,30 @@ class Import(unittest.TestCase):
             self.assertIn(said, message)
             self.assertIn("--set-meta", message)
 
+    def test_a_transducer_is_kept_and_each_part_can_be_replaced(self):
+        file = self.write("cell.csv", self.rows())
+        self.call(*self.arguments(file, "--load-cell-frequency", "300 Hz"))
+        with h5py.File(self.folder / "x.h5") as record:
+            tester = record["entry/instrument/tester"]
+            self.assertEqual({name: tester[name][()] for name in ("load_cell_frequency", "load_cell_damping")}, {"load_cell_frequency": 300.0, "load_cell_damping": 0.05})
+            self.assertNotIn("anti_alias", tester)
+        self.assertRegex(self.call("show", self.folder / "x.h5"), r"(?m)^  load_cell +300 Hz, damping 0\.05$")
+
+        def delta_mu(*options):
+            return json.loads(self.call("analyze", self.folder / "x.h5", "--json", *options))["tests"][0]["delta_mu"]
+
+        # With a filter beside the cell, which stays, S - K is another one than with either alone.
+        cell = ("--load-cell-frequency", "300 Hz")
+        both = delta_mu("--anti-alias", "150 Hz")
+        self.assertEqual(both, delta_mu("--anti-alias", "150 Hz", *cell))
+        self.assertEqual(delta_mu(), delta_mu(*cell))
+        self.assertNotEqual(both, delta_mu())
+        for options, said in ((("--load-cell-frequency", "80"), "a frequency needs its unit"), (("--anti-alias", "0 Hz"), "must be 0.1 to 1000000 Hz"),
+                              (("--load-cell-damping", "0.1"), "--load-cell-damping needs --load-cell-frequency"), (("--anti-alias-order", "3"), "--anti-alias-order needs --anti-alias"),
+                              (("--anti-alias", "60 Hz", "--anti-alias-order", "2.5"), "must be a whole number"), (("--anti-alias", "60 Hz", "--anti-alias-order", "9"), "must be 1 to 8\n"),
+                              ((*cell, "--load-cell-damping", "1"), "must be 0 to 0.99\n")):
+            self.assertIn(said, self.call("analyze", self.folder / "x.h5", *options, status=2))
+
     def test_a_folder_that_is_missing_is_told_before_the_file_is_read(self):
         file = self.write("pull.csv", self.rows())
         words = [str(self.folder / "nowhere" / "x.h5") if word == self.folder / "x.h5" else word for word in self.arguments(file)]
