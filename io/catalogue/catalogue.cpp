@@ -77,9 +77,16 @@ Seen look_at_records(const fs::path& folder) {
   Seen seen{.found = io::find_files(
                 folder, [](std::string_view name) { return name.ends_with(".h5"); }, kDeepestFolder),
             .looks = {}};
-  Looker looker;
-  seen.looks.reserve(seen.found.files.size());
-  for (const std::string& path : seen.found.files) seen.looks.push_back(looker.look_at(path));
+  const std::span<const std::string> files{seen.found.files};
+  seen.looks.resize(files.size());
+  const auto look_at = [&](std::size_t first, std::size_t end) {
+    Looker looker;
+    for (std::size_t i = first; i < end; ++i) seen.looks[i] = looker.look_at(files[i]);
+  };
+  const std::size_t half = files.size() / 2;
+  std::future<void> other = std::async(look_at, half, files.size());
+  look_at(0, half);
+  other.get();
   return seen;
 }
 
