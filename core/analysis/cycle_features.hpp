@@ -18,9 +18,9 @@ namespace stickslip::analysis {
 inline constexpr std::size_t kFewestFeatureCycles = 3;
 
 /// Fills delta_mu_from_amplitude, delta_mu_from_timing, delta_mu_from_slip_speed, delta_mu_combined,
-/// mu_k_from_mean and mu_s_from_amplitude. Uses the cycles without a gap that begin and end in sticking;
-/// leaves out the first slip unless estimates.first_counts. Standard errors combine the scatter from cycle to
-/// cycle with the uncertainty of ω, γ and r.
+/// mu_k_from_mean and mu_s_from_amplitude. S and K include the drift. Uses the cycles without a gap and with
+/// enough scans that begin and end in sticking; leaves out the first slip unless estimates.first_counts.
+/// Standard errors combine the scatter from cycle to cycle with the uncertainty of ω, γ and r.
 ///
 /// All are absent, with the reason, if no slip stuck again, there are fewer than kFewestFeatureCycles cycles,
 /// results.delta_mu is not positive, γ is negative, or a feature has no inverse, as near the threshold.

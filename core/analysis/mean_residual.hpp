@@ -16,10 +16,10 @@ inline constexpr double kVarianceOfNoise = 16.0;
 /// Residuals of a fit, averaged over the slips in bins of the time since the onset.
 class MeanResidual {
  public:
-  /// Residuals added from now on are those of another slip.
+  /// Residuals added from now on are those of another slip. Call it before the first add().
   void begin_slip() noexcept { slip_ += 1.0; }
   /// \param periods  time since the onset over the period of the oscillation, negative in the stick before;
-  ///         ignored outside −0.5 … 1.
+  ///         ignored outside [−0.5, 1).
   /// \param sigmas  residual of one scan over the noise of a scan; counts as ±3 at most.
   void add(double periods, double sigmas) noexcept;
   /// Adds the residuals of other slips.

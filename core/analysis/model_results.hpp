@@ -126,11 +126,11 @@ void escape_results(const SlipEstimates& estimates, TestResults& results);
 /// `reason`.
 void no_model_results(const std::string& reason, TestResults& results);
 
-/// Table of cycles, one row for each slip; the first of `slips` has number 0 and kCycleIsFirst. Onset,
-/// capture, stick and slip times, S − K, slip_speed_ratio and pull speed are NaN where the fit did not
-/// converge, and for a slip that did not begin from sticking or has no window; capture and slip time also
-/// unless it ended in sticking, stick time also unless its beginning is known, pull speed also on a constant
-/// belt.
+/// Table of cycles, one row for each slip. The first of `slips` has number 0; it and those after a hold have
+/// kCycleIsFirst. Onset, capture, stick and slip times, S − K, slip_speed_ratio and pull speed are NaN where
+/// the fit did not converge, and for a slip that did not begin from sticking or has no window; capture and
+/// slip time also unless it ended in sticking, stick time also unless its beginning is known, pull speed also
+/// on a constant belt.
 /// The caller sets first_scan, the evidence of capture, and the flags for spikes, gaps and saturation.
 [[nodiscard]] std::vector<detect::Cycle> cycle_table(const estimate::Trace& trace,
                                                      std::span<const detect::Fall> slips,

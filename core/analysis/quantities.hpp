@@ -18,7 +18,7 @@ struct Quantity {
   Estimate analysis::TestResults::*estimate;
   std::string_view label;    ///< For tables at a terminal: with the symbol.
   std::string_view in_full;  ///< For pages: with the name in the standards.
-  bool of_model;             ///< A quantity of the two-parameter model, not one that ISO 8295 defines.
+  bool of_model;  ///< A quantity of the two-parameter model; static, kinetic and amplitude are not.
 };
 
 inline constexpr std::size_t kQuantityCount = 8;

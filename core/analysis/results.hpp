@@ -57,8 +57,8 @@ struct TestResults {
   std::string regime_reason;  ///< What decided the regime; text for the user.
   Rung rung = Rung::kNone;    ///< Where S, K and S − K come from.
   std::string rung_reason;    ///< Why not a higher rung; empty on the highest. Text for the user.
-  /// Part of the slip with the largest residuals, "rise", "peak", "fall" or "trough"; empty unless their size
-  /// is significant.
+  /// Part of the slip with the largest residuals, "rise", "peak", "fall" or "trough"; empty if there is no
+  /// Misfit::place().
   std::string misfit_place;
 
   /// s after the record's first scan, only for mixed: onset of the first slip that ended otherwise than the
@@ -70,7 +70,7 @@ struct TestResults {
   Estimate stick_cycle_count;
   Estimate period_median;          ///< s, from peak to peak.
   Estimate oscillation_frequency;  ///< Hz, cycles over time; ω/2π of a ring-down with a fit.
-  Estimate static_coefficient;     ///< Traditional, by the method.
+  Estimate static_coefficient;     ///< Traditional, by the method; absent if the trace begins under load.
   Estimate kinetic_coefficient;    ///< Traditional, by the method.
   Estimate mu_s;                   ///< S of the model: mean over the slips, from `rung`.
   Estimate mu_k;                   ///< K of the model: mean over the slips, from `rung`.
@@ -100,7 +100,7 @@ struct TestResults {
   Estimate mu_k_from_mean;              ///< K: the mean, corrected for the bias by damping.
   Estimate mu_s_from_amplitude;         ///< S: mu_k_from_mean + delta_mu_from_amplitude.
   Estimate pull_speed_measured;         ///< m/s, from the stick rate and ω₀.
-  Estimate slip_speed_ratio_threshold;  ///< Smallest ratio [18] of a slip that ends in sticking.
+  Estimate slip_speed_ratio_threshold;  ///< Ratio [18] from which on a slip ends in sticking: e^(πγ/2ω).
 
   Estimate mu_slope;  ///< s/m, μ′ = ∂μ_k/∂v, relative to the paper of the tester's characterisation.
   /// Systematic residual of the fit, in standard deviations of the scan noise, 0 for noise alone:

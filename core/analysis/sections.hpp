@@ -30,7 +30,7 @@ inline constexpr std::size_t kMostSlipsTogether = 1024;
 struct FittedSlip {
   std::size_t first = 0;
   std::size_t end = 0;
-  bool captured = false;
+  bool captured = false;  ///< Fitted as ending in sticking; true also if its end is not known.
   model::SlipParameters slip;
   model::SharedParameters shared;
 };
@@ -43,8 +43,9 @@ struct TestEstimates {
   base::LongColumn<double> log_likelihood_ratios;  ///< Captured over free, one fewer than slips; 0: unknown.
   base::LongColumn<detect::Cycle> cycles;          ///< One for each slip, as from cycle_table().
   base::LongColumn<double> onset_errors_s;         ///< Standard error of each onset; NaN if unknown.
-  base::LongColumn<FittedSlip>
-      fitted;                 ///< One for each onset from sticking; empty unless settings.keep_fitted.
+  /// One for each onset from sticking, without sections whose fit did not converge; empty unless
+  /// settings.keep_fitted.
+  base::LongColumn<FittedSlip> fitted;
   std::int64_t captured = 0;  ///< Slips that ended in sticking.
   /// The model describes each section, S is not clearly below K, and, if slips stick, S − K exceeds its
   /// standard error.
@@ -67,9 +68,11 @@ struct SectionSettings {
 };
 
 /// Fits the slips section by section and combines the estimates. S − K that is not told from 0 is half of
-/// its bound, as by tell_bound(): if it is negative but not clearly, or if no slip stuck and its standard
-/// error reaches half of the bound.
-/// \param slips  falls that are slips, in the order of time, not empty. \param sigma  noise of one scan, > 0.
+/// its bound, as by tell_bound(): if it is not positive but not clearly negative, or if no slip stuck and its
+/// standard error reaches half of the bound. The bound is S − K plus twice its total_error(), or the
+/// amplitude if that is less.
+/// \param slips  falls that are slips, in the order of time, not empty.
+/// \param sigma  noise of one scan, > 0.
 /// \param prior  of ω, γ and the stick rate; may be empty.
 [[nodiscard]] TestEstimates estimate_in_sections(const estimate::Trace& trace,
                                                  const base::LongColumn<detect::Fall>& slips, double sigma,

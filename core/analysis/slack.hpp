@@ -20,7 +20,7 @@ namespace stickslip::analysis {
 struct Slack {
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -std::numeric_limits<double>::infinity();
-  std::size_t count = 0;  ///< Slips with such a trough.
+  std::size_t count = 0;  ///< Slips with such a trough, but for the last slip of the test.
 
   /// Whether the slip ended in slack: the lowest of the five scans about its trough lies in the range. The
   /// interpolated trough may lie below it, at the corner of a fall into slack.

@@ -37,10 +37,10 @@ struct SlipEstimates {
   std::vector<estimate::SlipWindow> windows;  ///< One for each onset from sticking.
   std::vector<std::size_t> window_of_slip;    ///< Index into `windows` for each slip, or kNoWindow.
   estimate::SlipFit fit;
-  model::SharedParameters guess;  ///< By turning points and slopes: where the fit began.
+  model::SharedParameters guess;  ///< By turning points and slopes: where the first try began.
   /// Fit of one S and one K to all slips but the first (with it if first_counts). Nullopt if the slips differ
-  /// by more than noise, one did not end in sticking, they are fewer than three, `belt` is not constant, or a
-  /// fit did not converge.
+  /// by more than noise, one ended in kFree, they are fewer than three, `belt` is not constant, no periodic
+  /// stick-slip has their means, or a fit did not converge.
   std::optional<estimate::UniformFit> uniform;
   model::BeltMotion belt;     ///< Belt speed over the time of the trace.
   bool first_counts = false;  ///< Means include the first slip and those after a hold.

@@ -36,8 +36,9 @@ namespace stickslip::analysis {
 /// The first scan after the pull in which the slip lies; the size of the trace if there is none, as at
 /// constant speed.
 [[nodiscard]] std::size_t end_of_pull(const estimate::Trace& trace, const detect::Fall& slip);
-/// Whether the pull ended during the last slip: the force after its trough does not rise as in a stick. False
-/// with fewer than four slips, or if the trace ends or breaks too early to show that.
+/// Whether the pull ended during the last slip: the force after its trough does not rise as in a stick. True
+/// also of a free oscillation, which does not rise either. False with fewer than four slips, or if the trace
+/// ends or breaks too early to show that.
 [[nodiscard]] bool pull_ended_in_last_slip(const estimate::Trace& trace, std::span<const detect::Fall> slips,
                                            const model::SharedParameters& shared);
 

@@ -73,7 +73,7 @@ class TestAnalysis {
   /// \param saturated    the converter was at a rail.
   void add(base::ScanIndex index, double coefficient, bool saturated);
   /// Scans [first, first + count) are missing. Call between the add() before them and the one after.
-  /// \param estimated  the count comes from a clock.
+  /// \param estimated  the count comes from a clock; the gap is then a break, however short.
   void gap(base::ScanIndex first, std::int64_t count, bool estimated = false);
 
   // The next three functions require settings.live.
@@ -94,12 +94,13 @@ class TestAnalysis {
   /// and zero are absent: core/pipeline adds them.
   [[nodiscard]] TestResults finish();
 
-  /// After finish(): one cycle for each slip; empty if there is none. Without S − K where that is absent.
+  /// After finish(): one cycle for each slip; empty if there is none. Cycle::delta_mu is NaN for slips that
+  /// ended in slack, and for all if the results have no S − K.
   [[nodiscard]] const base::LongColumn<detect::Cycle>& cycles() const noexcept { return cycles_; }
   /// Moves the cycles out.
   [[nodiscard]] base::LongColumn<detect::Cycle> take_cycles() { return std::exchange(cycles_, {}); }
   /// After finish(): the tester's parameters from this test alone, without settings.prior; nullopt unless
-  /// such a fit describes the test.
+  /// such a fit describes the test, or if SignalCheck::voids() its results.
   [[nodiscard]] const std::optional<TesterEstimate>& tester() const noexcept { return tester_; }
   /// After finish(): check against settings.prior.coupling; nullopt without it, without tester(), or if the
   /// fit with that prior did not converge.

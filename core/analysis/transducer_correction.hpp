@@ -29,8 +29,8 @@ class ThroughTransducer {
  public:
   /// Estimates of a trace, with TestEstimates::fitted.
   using Fit = std::function<TestEstimates(const estimate::Trace&)>;
-  /// Slips of the longest test that is corrected: some 20 fits of it take less time than the scans that wait
-  /// for the end of a test may.
+  /// Slips of the longest test that is corrected, which callers check: some 20 fits of it take less time than
+  /// the scans that wait for the end of a test may.
   static constexpr std::size_t kMostSlips = 4096;
   /// Slips from which the errors are learnt.
   static constexpr std::size_t kMostSlipsOfErrors = 128;
@@ -42,8 +42,10 @@ class ThroughTransducer {
 
   /// The slips whose image through the transducer is the trace: those that are fitted to the trace less what
   /// the transducer adds to them, found in rounds. Times stay those of the trace, in which all is late by the
-  /// transducer's lag. \param seen  fit(trace). \return nullopt if the rounds do not settle, or the
-  /// lag is more than a fifth of an oscillation.
+  /// transducer's lag.
+  /// \param seen  fit(trace).
+  /// \return the fit of the last round, whose model_describes may be false; nullopt if the rounds do not
+  /// settle, `seen` has no fitted slips, or the lag is more than a fifth of an oscillation.
   [[nodiscard]] std::optional<TestEstimates> estimate(const estimate::Trace& trace, const TestEstimates& seen,
                                                       const Fit& fit) const;
 

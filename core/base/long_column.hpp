@@ -28,11 +28,11 @@
 
 namespace stickslip::base {
 
-/// Vector that may keep its elements in a file. Thread-bound, even if const; view() is for another thread.
-/// With a folder, growing, truncating and reading may throw std::system_error; the column can be moved but
-/// not copied, and its elements cannot be changed (contract). It must then be read as const, for example by
-/// std::as_const, since the non-const [] and iterators give references. A column that was moved from can
-/// only be assigned to or destroyed.
+/// Vector that may keep its elements in a file. Thread-bound, even if const; view() makes a column for
+/// another thread. With a folder, growing, truncating and reading may throw std::system_error; the column can
+/// be moved but not copied, and its elements cannot be changed (contract). It must then be read as const, for
+/// example by std::as_const, since the non-const [] and iterators give references. A column that was moved
+/// from can only be assigned to or destroyed.
 template <typename T>
 class LongColumn {
   static_assert(std::is_trivially_copyable_v<T>);

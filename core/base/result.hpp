@@ -29,7 +29,8 @@ enum class ErrorKind {
 struct Error {
   ErrorKind kind = ErrorKind::kFailure;
   std::string message;
-  /// A child process died before it answered: by a limit, an exception or a signal.
+  /// A child process gave no answer: it died by a limit, an exception or a signal, or its answer was too
+  /// long.
   bool worker_died = false;
 
   /// Exit status for a command that ends with this error: 2 usage and input, 1 failure, 130 interrupted.

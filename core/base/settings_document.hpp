@@ -19,6 +19,7 @@
 
 namespace stickslip::base {
 
+/// Longest part shown of a message of the parser, or of an origin, bytes.
 inline constexpr std::size_t kLongestParserMessage = 200;
 
 [[nodiscard]] inline std::string joined_path(std::string_view parent, std::string_view key) {

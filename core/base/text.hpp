@@ -19,10 +19,10 @@ inline constexpr std::size_t kLongestName = 200;
 
 /// The text as one line of valid UTF-8. Shown by their numbers: control characters below 0x20 and bytes that
 /// are no UTF-8 (\x1b), other control characters (\u007f, \u009b), what changes the direction of text or
-/// breaks a line (\u202e, \u2028), and characters without width (\u200b, \ufeff, tags). Joiners and variation
-/// selectors stay, which words and signs need, as do rare characters without width.
-/// All other text, in any language, stays as it is, including a backslash, so that the result cannot be
-/// converted back.
+/// breaks a line (\u202e, \u2028), and characters without width (\u200b, \u2060, \ufeff, tags). Words and
+/// signs need the joiners U+200C and U+200D and variation selectors: they stay, as do rare characters without
+/// width. All other text, in any language, stays as it is, including a backslash, so that the result cannot
+/// be converted back.
 /// \param colours_stay  true: colour codes stay; the caller has escaped those of untrusted text.
 [[nodiscard]] std::string printable(std::string_view text, bool colours_stay = false);
 

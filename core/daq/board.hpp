@@ -64,7 +64,7 @@ enum class ReadStatus {
   kEndOfInput,    ///< There will be no more scans (end of a replay or a simulation). Repeats.
   kOverrun,       ///< The board lost scans and halted; start() again. Reported once.
   kSuspended,     ///< The computer was suspended, and scans were lost; start() again. Reported once.
-  kBoardMissing,  ///< The board is gone; only a new board object can bring it back. Repeats.
+  kBoardMissing,  ///< The board is gone or silent; only a new board object can bring it back. Repeats.
   kFailed,        ///< Any other error; last_error() says which. stop() and start() again.
 };
 
@@ -90,7 +90,7 @@ class Board {
   virtual void stop() noexcept = 0;
 
   /// Reason for the last failure of start() or read(), for the user; empty if neither failed since a start()
-  /// succeeded.
+  /// succeeded, or if the board gives none. kTimeout, kEndOfInput and kSuspended are no failures.
   [[nodiscard]] virtual std::string last_error() const { return {}; }
 };
 

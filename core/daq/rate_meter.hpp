@@ -41,9 +41,9 @@ class RateMeter {
 
   /// Rate over all blocks up to the last anchor; nullopt as RateFit::estimate().
   [[nodiscard]] std::optional<RateEstimate> estimate() const noexcept { return fit_.estimate(); }
-  /// State after the last block. Its anchor is that of the most prompt read; if no block since construction
-  /// or restarted() was read promptly, the last block, however late: fewer scans then count as lost. Nullopt
-  /// before the first block or started().
+  /// State after the last block. Its anchor is the latest one as of lateness_ns(); before the first, the most
+  /// prompt read so far. If no block since construction or restarted() was read promptly, it is the last
+  /// block, however late: fewer scans then count as lost. Nullopt before the first block or started().
   [[nodiscard]] std::optional<Continuation> continuation() const noexcept;
   /// Delay of this block's read relative to the latest anchor, the most prompt read of an earlier half
   /// second, ns; negative: earlier. Nullopt for an empty block and before the first anchor after construction

@@ -57,10 +57,11 @@ inline constexpr double kSmallestChange = 0.01;
 /// Fewest different weights under rising load, and fewest readings under falling load.
 inline constexpr int kFewestWeights = 3;
 
-/// Judges each reading and fits the accepted ones. The first reading must be the tare; weights then grow, and
-/// fall again. The result has no load cell but a reason, fit.reason, if there is no reading, if the first has
-/// a mass or is refused, if fewer than kFewestWeights count on the way up or down, or if fit_load_cell()
-/// finds none.
+/// Judges each reading and fits the accepted ones. Refused is a reading that is saturated, not finite or
+/// unstable (kLargestWander), and a weight that changes the voltage by less than kSmallestChange or within
+/// the noise. The first reading must be the tare; weights then grow, and fall again. The result has no load
+/// cell but a reason, fit.reason, if there is no reading, if the first has a mass or is refused, if fewer
+/// than kFewestWeights count on the way up or down, or if fit_load_cell() finds none.
 /// \param readings  masses at least 0 and finite (contract).
 /// \param span_V  of the converter's range; 0 if unknown: the largest difference from the tare replaces it.
 [[nodiscard]] WeighedCalibration weigh(std::span<const WeightReading> readings, double gravity_m_per_s2,

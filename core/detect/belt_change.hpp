@@ -29,8 +29,8 @@ class BeltChange {
     return before_.slip + 1 == slip && std::abs(std::log(rate / before_.rate)) < kStickRateChange;
   }
 
-  /// Whether another stick rate explains a misfit: it brings the residuals below kMisfitSigmas, or below half
-  /// of what they were. A missed spike leaves most of the misfit at any rate.
+  /// Whether another stick rate explains a misfit: it makes the residuals smaller, and brings them below
+  /// kMisfitSigmas or below half of what they were. A missed spike leaves most of the misfit at any rate.
   /// \param residual_sigmas  standard deviation of the residuals with the other rate, in σ.
   /// \param before_sigmas    with the known rate, in σ.
   [[nodiscard]] static bool explains(double residual_sigmas, double before_sigmas) noexcept {

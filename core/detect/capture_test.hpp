@@ -65,16 +65,18 @@ struct CaptureEvidence {
   /// c to S.
   double next_onset_s = std::numeric_limits<double>::quiet_NaN();
   double residual_sigmas = 0.0;  ///< Robust standard deviation of the better trajectory's residuals, in σ.
-  bool known = false;            ///< There were enough points for an evaluation: eight rows (ScanRow).
+  /// There were enough points for an evaluation: eight rows (ScanRow). False also for too many points.
+  bool known = false;
 };
 
 /// Compares the captured and the free trajectory of a slip. Keeps rows and fits of the last evaluation, so
 /// that evaluations of one slip, as its points come, cost less.
 class CaptureTest {
  public:
-  /// \param points  of a slip, from its force maximum on or from between onset and maximum; at most
-  ///        CycleBuffer::kMostPoints. Requires what ScanWindow::lay_out() does. Close above the threshold
-  ///        speed a free oscillation is often told only when they reach the minimum after the next maximum.
+  /// \param points  of a slip, from its force maximum on or from between onset and maximum; none, or more
+  ///        than CycleBuffer::kMostPoints, leave the evidence unknown. From call to call they change only as
+  ///        ScanWindow::lay_out() allows. Close above the threshold speed a free oscillation is often told
+  ///        only when they reach the minimum after the next maximum.
   [[nodiscard]] CaptureEvidence evaluate(std::span<const estimate::CyclePoint> points,
                                          const CapturePrior& prior, const Budget& budget) noexcept;
 

@@ -73,6 +73,7 @@ class CapturedTrajectory {
   /// \param typical_delta_mu > 0.
   [[nodiscard]] Equations unusual(double typical_delta_mu) const noexcept;
   /// Prior terms plus the residuals of the rows, with Huber's weights (kChoiceLimit).
+  /// \param rows  in the order of time.
   [[nodiscard]] Equations equations(std::span<const ScanRow> rows, double typical_delta_mu) const noexcept;
 
  private:

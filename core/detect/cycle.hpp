@@ -11,8 +11,8 @@
 namespace stickslip::detect {
 
 /// Bits of Cycle::flags. "Inside" is from this peak to the next; in the last cycle to its trough. While the
-/// test runs, the last cycle reaches to the end of the test; one whose ring-down has died away ends at its
-/// trough.
+/// test runs, the last cycle reaches to the end of the test; one whose ring-down has died away ends where its
+/// slip was confirmed, in the rise after the trough.
 enum CycleFlag : std::uint8_t {
   kCycleHasSpike = 1U << 0U,  ///< A spike was replaced inside.
   kCycleHasGap = 1U << 1U,    ///< Scans are missing inside.
@@ -41,7 +41,8 @@ struct Cycle {
   double delta_mu_standard_error = 0.0;
   double slip_speed_ratio = 0.0;  ///< Largest slip speed over drive speed, −c′/r [Penner 1995, (18)].
   std::uint8_t flags = 0;         ///< CycleFlag bits.
-  /// Pull speed at the onset if it is measured or changes; else NaN. Set at the end of the test.
+  /// Pull speed at the onset, or at the peak if no fit of the test tells onsets, if it is measured or
+  /// changes; else NaN. Set at the end of the test.
   double pull_speed_m_per_s = std::numeric_limits<double>::quiet_NaN();
   /// Log-likelihood ratio of capture over free oscillation: > 0 speaks for capture. Set at the end of the
   /// test, from the fit of the whole test or, without that, from LiveCycle::evidence; NaN if undetermined, as

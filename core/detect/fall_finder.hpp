@@ -22,8 +22,9 @@ struct Fall {
   /// Scans from the last above 90 % to the first below 10 % of the drop. For a fall of more than
   /// signal::kMostSteps scans it may be too large by 0.2 % of the time from peak to trough.
   double duration = 0.0;
-  double rise_duration = 0.0;  ///< Scans from the minimum before to the peak; 0 if the trace begins at it.
-  double rise_from = 0.0;      ///< Median of three at that turning point.
+  /// Scans from the minimum before to the peak; 0 if the trace begins at the peak.
+  double rise_duration = 0.0;
+  double rise_from = 0.0;  ///< Median of three at that minimum; at the peak if the trace begins there.
 
   double robust_drop = 0.0;  ///< Drop of the median of three, which noise hardly affects.
 

@@ -28,8 +28,8 @@ class RingDownWatch {
   [[nodiscard]] bool running() const noexcept { return running_; }
 
   /// \param value  coefficient. \param usable  false: the scan only advances time.
-  /// \return the amplitude if this scan ends a period with four usable scans at least. Nullopt otherwise, and
-  /// if not running().
+  /// \return the amplitude if this scan ends a period with four usable scans at least, which determine the
+  /// fit. Nullopt otherwise, and if not running().
   std::optional<Amplitude> add(double value, bool usable) noexcept {
     if (!running_) return std::nullopt;
     return take(value, usable);

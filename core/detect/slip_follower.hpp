@@ -27,7 +27,8 @@ class SlipFollower {
 
   /// The next scan that is usable: it is no spike and not saturated.
   void add(double time_s, double value) noexcept { buffer_.add(time_s, value); }
-  /// Reports a fall under way: times of its peak and of its lowest point so far.
+  /// Reports a fall under way: times of its peak and of its lowest point so far. Its scans are then merged
+  /// into short blocks only (CycleBuffer::keep_fine()).
   void falls(double peak_s, double lowest_s) noexcept;
   /// Scans are missing after the last one; later scans are not connected with earlier ones. A slip whose end
   /// is not decided yet stays undecided.
@@ -56,6 +57,8 @@ class SlipFollower {
   [[nodiscard]] bool decided() const noexcept { return now_.decided; }
   /// False also if it is not decided.
   [[nodiscard]] bool captured() const noexcept { return (slip_.cycle.flags & kCycleCaptured) != 0; }
+  /// The slip begun last; of its flags only kCycleCaptured is set. The caller sets the other flags, number,
+  /// first_scan and period_s.
   [[nodiscard]] const LiveCycle& slip() const noexcept { return slip_; }
   /// Mutable, so that the caller can set values that it knows better.
   [[nodiscard]] LiveCycle& slip() noexcept { return slip_; }

@@ -10,8 +10,9 @@ namespace stickslip::detect {
 
 /// A slip is a fall that is significant against the measured noise and fast relative to the rise before it,
 /// and the rise contains no fall of kLargestFallInStick of the drop or more. The rise begins at the trough of
-/// the last significant fall. Limits are in standard deviations σ of the noise of one scan, in scans, or
-/// ratios; none depends on the scan rate or the file.
+/// the last significant fall, or before the first one Fall::rise_duration before the peak. Limits are in
+/// standard deviations σ of the noise of one scan, in scans, or ratios; none depends on the scan rate or the
+/// file.
 ///
 /// They were placed on measured traces of paper on paper: textbook saw-teeth have slips of 16 σ up that take
 /// at most 0.10 of the time of the rise before; a nearly sinusoidal trace has slips of 22 σ up that take at

@@ -38,14 +38,15 @@ class CycleBuffer {
 
   /// \param time_s  rises from call to call. Leave out unusable scans.
   void add(double time_s, double value) noexcept { add({time_s, value, 0.0, 1.0, time_s, time_s}); }
-  /// Limits the length of blocks in [from_s, to_s] to longest_s. Replaces the limit of an earlier call. The
-  /// limit is dropped if the buffer overflows with it.
+  /// Limits the length of blocks that overlap [from_s, to_s] to longest_s in later merges. Replaces the limit
+  /// of an earlier call. The limit is dropped if the buffer overflows with it.
   void keep_fine(double from_s, double to_s, double longest_s) noexcept;
   /// Removes the points that end before time_s.
   void forget_before(double time_s) noexcept;
   /// Removes all points. The limit of keep_fine() stays.
   void clear() noexcept { size_ = 0; }
 
+  /// All points, oldest first. Spans are valid until the buffer is changed.
   [[nodiscard]] std::span<const CyclePoint> points() const noexcept { return {points_.data(), size_}; }
   /// Points that begin at time_s or later.
   [[nodiscard]] std::span<const CyclePoint> since(double time_s) const noexcept;
@@ -67,11 +68,12 @@ class CycleBuffer {
 };
 
 /// Points of a span whose mean time lies in [from_s, to_s).
+/// \param points  in the order of time.
 [[nodiscard]] std::span<const CyclePoint> between(std::span<const CyclePoint> points, double from_s,
                                                   double to_s) noexcept;
 
 /// Replaces the contents by the usable scans [first, end) of a trace, without the drift. In the period_s
-/// after the first scan blocks are at most period_s/40 long. [first, end) must not be empty.
+/// after scan `first` blocks are at most period_s/40 long, by keep_fine(). [first, end) must not be empty.
 void read_slip(CycleBuffer& buffer, const Trace& trace, std::size_t first, std::size_t end, double period_s);
 
 }  // namespace stickslip::estimate

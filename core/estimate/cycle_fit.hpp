@@ -23,7 +23,7 @@ struct CycleFit {
   bool converged = false;
   model::SlipParameters slip;
   model::SharedParameters shared;
-  /// Of (onset, S, K), including the uncertainty of ω, γ and r.
+  /// Of (onset, S, K), including the uncertainty of ω, γ and r; larger if the residuals exceed noise.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   SharedEvidence evidence;  ///< Information about ω, γ and r from these scans alone, without the prior.
   double capture_s = 0.0;   ///< After the onset; infinity if not captured.

@@ -22,8 +22,8 @@ struct SamplingVerdict {
   std::string reason;  ///< For people; empty if fine.
 };
 
-/// Expected frequency: ω/2π if the tester is characterised, else √(k/m)/2π; nullopt without either a
-/// characterisation or stiffness and sled mass.
+/// Expected frequency: ω/2π if the prior has a characterisation (SharedPrior::coupling), else √(k/m)/2π;
+/// nullopt without either that or stiffness and sled mass.
 [[nodiscard]] std::optional<double> expected_frequency_Hz(const model::Tester& tester,
                                                           const SharedPrior& prior);
 

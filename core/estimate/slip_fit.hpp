@@ -26,7 +26,7 @@ namespace stickslip::estimate {
 struct SlipWindow {
   std::size_t first = 0;
   std::size_t end = 0;
-  bool captured = false;
+  bool captured = false;       ///< The model sticks again after the slip; false: its oscillation goes on.
   model::SlipParameters slip;  ///< First guess; the estimate after the fit. S and K without Trace::drift.
 
   // Set by fit_slips() for covariances.

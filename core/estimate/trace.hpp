@@ -25,7 +25,7 @@ struct Drift {
 struct Trace {
   base::LongColumn<double> time_s;  ///< (scan index − first index of the record) / granted rate.
   base::LongColumn<double> value;   ///< Coefficient; a spike is replaced by what its neighbours have there.
-  /// 0 for a spike or a scan that is saturated or held at a limit; fits leave it out.
+  /// 0 for a spike or a scan that is saturated, clipped or frozen; fits leave it out.
   base::LongColumn<std::uint8_t> usable;
 
   /// Drift. Fits subtract it from the values, so that their S and K lack it; who reports S and K adds it.
@@ -74,7 +74,7 @@ inline void append_usable(const Trace& trace, std::size_t first, std::size_t end
   }
 }
 
-/// Whether a break lies between two positions, in scans.
+/// Whether a break lies between two positions, in scans: at half a scan before its entry in Trace::breaks.
 [[nodiscard]] inline bool is_broken(const Trace& trace, double from, double to) noexcept {
   const auto at = [](std::size_t scan) { return static_cast<double>(scan) - 0.5; };
   const auto first = std::upper_bound(trace.breaks.begin(), trace.breaks.end(), from,
@@ -82,8 +82,8 @@ inline void append_usable(const Trace& trace, std::size_t first, std::size_t end
   return first != trace.breaks.end() && at(*first) < to;
 }
 
-/// Time of a fractional scan position, by linear interpolation; that of the last scan for positions after it.
-/// The trace must not be empty.
+/// Time of a fractional scan position, by linear interpolation; extrapolated before the first scan, that of
+/// the last scan for positions after it. The trace must not be empty.
 [[nodiscard]] inline double time_at(const Trace& trace, double position) noexcept {
   const auto before =
       static_cast<std::size_t>(std::clamp(position, 0.0, static_cast<double>(trace.size() - 1)));

@@ -13,7 +13,7 @@
 
 namespace stickslip::estimate {
 
-/// Result of fit_uniform().
+/// Result of fit_uniform(). Unless it converged, its members are no estimates.
 struct UniformFit {
   bool converged = false;
   model::UniformParameters parameters;  ///< S and K without Trace::drift.

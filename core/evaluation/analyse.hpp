@@ -36,7 +36,7 @@ class RecordAnalysis {
   // Both may throw std::system_error where there is a scratch folder.
 
   /// Consecutive scans from `first` on, after all before; a jump is a gap.
-  /// \param raw  of the quantity header.board.quantity; finite.
+  /// \param raw  of the quantity header.board.quantity; finite; may be empty.
   /// \param second  codes of the second channel, as record::Record::second: as many, or none if there is no
   ///        such channel.
   void add(daq::ScanIndex first, std::span<const double> raw, std::span<const std::int32_t> second = {});

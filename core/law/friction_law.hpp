@@ -78,7 +78,9 @@ inline constexpr std::array kLaws{Law::kConstant, Law::kAgeing, Law::kRate, Law:
 
 /// How well a law predicts tests that it was not fitted to.
 struct LawScore {
-  double score = 0.0;         ///< Mean over the tests of the log density of the left-out S and K.
+  /// Mean over the tests of the log density of the left-out S and K. A coefficient that a test lacks, or that
+  /// fewer than kFewestTests tests have, adds 0.
+  double score = 0.0;
   double behind = 0.0;        ///< Score of the best law less this one; 0 for the best.
   double behind_error = 0.0;  ///< Standard error of `behind`, by its scatter over the tests.
 };
@@ -92,8 +94,8 @@ struct Dependence {
   std::vector<std::size_t> tests;  ///< Indices among the tests, one for each point.
   std::optional<Line> constant;    ///< Absent with fewer than two points.
   std::optional<Line> line;  ///< With the slope, β or μ′; absent with fewer than three points or one place.
-  /// As β or μ′: a tenth of S − K over a decade of speed about the geometric mean of the tests' speeds; 0:
-  /// not known.
+  /// As β or μ′: a tenth of FrictionLaw::delta_mu over a decade of speed about the geometric mean of the
+  /// tests' speeds; 0: not known.
   double slope_that_matters = 0.0;
   Verdict verdict = Verdict::kCannotTell;  ///< kYes whatever the line if FrictionLaw::is_rate_and_state().
   std::string reason;                      ///< Why not, for people; set exactly for kCannotTell.

@@ -38,7 +38,8 @@ struct LawTests {
 /// - K of a test that slides steadily is its kinetic coefficient where it has no other K.
 /// - By turning points, the systematic part is a correction of its own in each test: it joins the error. In
 ///   tests by rests it stays systematic.
-/// - A value without an error has the largest of the others', or 1e-6 if none has one.
+/// - A value without an error has the largest of the others', or 1e-6 if none has one; that of a rest has
+///   1e-6.
 [[nodiscard]] LawTests tests_for_law(std::span<const analysis::MeasuredTest> measured);
 
 }  // namespace stickslip::law

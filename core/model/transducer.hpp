@@ -12,7 +12,7 @@
 
 namespace stickslip::model {
 
-/// A load cell that swings: y″ + 2ζω y′ + ω² y = ω² (the force).
+/// A load cell that swings: y″ + 2ζω y′ + ω² y = ω² x, where x is the force and y what the cell shows.
 struct LoadCellDynamics {
   double frequency_Hz = 0.0;   ///< ω/2π, natural, without damping; > 0.
   double damping_ratio = 0.0;  ///< ζ ≥ 0
@@ -32,7 +32,7 @@ inline constexpr double kTypicalCellDamping = 0.05;
 /// Largest damping ratio of a load cell that can be stated for a fit: above it a cell does not ring.
 inline constexpr double kLargestCellDamping = 0.99;
 
-/// Frequencies of a transducer that can be stated for a fit.
+/// Lowest and highest frequency of a transducer that can be stated for a fit; both are allowed.
 inline constexpr double kSlowestTransducer_Hz = 0.1;
 inline constexpr double kFastestTransducer_Hz = 1e6;
 
@@ -47,20 +47,20 @@ struct Transducer {
   [[nodiscard]] bool is_valid() const noexcept;
 };
 
-/// What a transducer shows of a force that is known at equal steps and straight between them. What one
-/// section of the transducer hands to the next counts as straight, too: exact for a single section.
-/// The simulator has one of its own (core/sim/transducer.hpp), exact for closed forms, by which fits are
-/// judged.
+/// What a transducer shows of a force that is known at equal steps and straight between them, in the force's
+/// unit. At first it is at rest under no force. What one section of the transducer hands to the
+/// next counts as straight, too: exact for a single section. The simulator has one of its own
+/// (core/sim/transducer.hpp), exact for closed forms, by which fits are judged.
 class TransducerResponse {
  public:
-  /// \param step_s  > 0.
+  /// \param transducer  valid (contract). \param step_s  > 0 (contract).
   TransducerResponse(const Transducer& transducer, double step_s);
 
   /// Begins anew, as after a long time on a line: the force is `value` now and rises by `rate_per_s`.
   void settle(double value, double rate_per_s) noexcept;
   /// One step later. \param value  the force there. \return what is shown there.
   double next(double value) noexcept;
-  /// By so much a force on a line is shown late, and a slow oscillation nearly so.
+  /// By so much a force on a line is shown late, and a slow oscillation nearly so; 0 if ideal.
   [[nodiscard]] double lag_s() const noexcept;
   /// What is shown now.
   [[nodiscard]] double shown() const noexcept;

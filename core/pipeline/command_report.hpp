@@ -14,8 +14,8 @@ namespace stickslip::pipeline {
 struct CommandReport {
   std::string refusal;                       ///< Reason for a refusal, for the user; empty: done.
   BenchState state = BenchState::kDegraded;  ///< State after the command.
-  std::int64_t test = 0;     ///< The running test, else the next one; of a stop: the test that it ended.
-  base::ScanIndex scan = 0;  ///< First scan affected; of a stop or a mark the latest scan.
+  std::int64_t test = 0;                     ///< The test that runs or that a stop ended; else the next one.
+  base::ScanIndex scan = 0;                  ///< First scan affected; of a stop or a mark the latest scan.
 };
 
 /// Outcome of a tare. If it was refused, its numbers mean nothing.

@@ -39,7 +39,7 @@
 namespace stickslip::pipeline {
 
 struct ProcessorSettings {
-  // The A/D step of both is taken from the calibration.
+  // The A/D step of both is taken from the calibration. Both scan rates must be the granted one.
   SegmenterSettings segmenter;
   analysis::AnalysisSettings analysis;
   std::int64_t first_test_number = 1;
@@ -48,7 +48,8 @@ struct ProcessorSettings {
   /// Nullopt for the first acquisition.
   std::optional<daq::ScanIndex> continues_at;
   /// Facts of the record that is replayed; null for a bench. They replace clock anchors, read latency,
-  /// self-check, unloaded level and the causes of gaps, and the commands of its notes are carried out again.
+  /// self-check (if it has one), unloaded level and the causes of gaps, and the start and stop of its notes
+  /// are carried out again; with a start, force begins no test.
   std::shared_ptr<const daq::RecordedFacts> recorded;
   std::optional<daq::SecondChannel> second;  ///< Second channel of the board; nullopt if there is none.
   /// Whether the stamps are of the machine's own clock. If not, tests have no clock anchors, measured

@@ -83,7 +83,7 @@ struct TestEnd {
   base::LongColumn<detect::Cycle> cycles;             ///< Final values, after the whole-test estimate.
   std::vector<daq::ScanIndex> spikes;                 ///< Scans replaced for the detector.
   std::vector<double> spike_coefficients;             ///< Measured coefficient of each spike.
-  std::optional<daq::LatencyHistogram> read_latency;  ///< Delays of its blocks; nullopt without a clock.
+  std::optional<daq::LatencyHistogram> read_latency;  ///< Delays of its blocks; nullopt if none is known.
 };
 
 /// Interface of a sink. The processing thread calls it in this order: began, (scans | gap | anchor | fall |
@@ -96,6 +96,7 @@ class Sink {
   virtual void test_began(const TestStart& /*start*/) {}
   /// Raw scans of the running test, consecutive, oldest first.
   /// \param second  codes of the second channel: as many, or none if there is no such channel.
+  /// \param stamp  of the block with these scans; of the first call TestStart::stamp.
   virtual void scans(daq::ScanIndex /*first*/, std::span<const double> /*raw*/,
                      std::span<const std::int32_t> /*second*/, const daq::ClockStamp& /*stamp*/) {}
   /// Scans missing from the running test.

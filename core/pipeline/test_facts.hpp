@@ -23,7 +23,7 @@ struct CalibrationInUse {
   std::optional<double> gain_uncertainty = {};      ///< Standard error over gain; nullopt: unknown.
   std::optional<daq::GainChange> gain_change = {};  ///< A change that had to be confirmed.
   std::string expires = {};                         ///< ISO 8601; empty: never.
-  std::optional<std::int64_t> expires_ns = {};      ///< As realtime, ns since 1970 UTC; nullopt: never.
+  std::optional<std::int64_t> expires_ns = {};  ///< Expired from then on, ns since 1970 UTC; nullopt: never.
 };
 
 /// The finding for a calibration that has expired. \param expires  date, ISO 8601.

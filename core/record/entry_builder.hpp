@@ -14,6 +14,8 @@
 namespace stickslip::record {
 
 /// Encoder of one journal's entries. Returned bytes include head and CRC and are valid until the next call.
+/// Ranges are not checked: read_journal() takes scans, gaps, anchors and events outside of those of
+/// range_checked() for damage.
 class EntryBuilder {
  public:
   using Bytes = std::span<const std::byte>;
@@ -21,13 +23,15 @@ class EntryBuilder {
   /// \param header  has a uuid, and a load cell if the board gives counts (contract).
   explicit EntryBuilder(const RecordHeader& header);
 
+  /// The first entry. \param header  that of the constructor, which is not checked.
   [[nodiscard]] Bytes header(const RecordHeader& header);
   /// \param first  not before the end of the scans of the latest call (contract).
   /// \param raw  consecutive, not empty; counts are whole numbers in 0 … maxdata (contract).
   /// \param stamp  only its monotonic time is stored.
   [[nodiscard]] Bytes scans(daq::ScanIndex first, std::span<const double> raw, const daq::ClockStamp& stamp);
-  /// Noise-free coefficients of consecutive scans that are in the journal already.
-  /// \param first  of scans that no earlier call had; read_journal() takes an overlap for damage.
+  /// Noise-free coefficients of consecutive scans that are in the journal already; NaN where unknown.
+  /// \param first  of scans that no earlier call had; read_journal() takes an overlap, or values of which no
+  ///        scan is in the journal, for damage.
   [[nodiscard]] Bytes true_coefficients(daq::ScanIndex first, std::span<const double> coefficient);
   /// Codes of the second channel. Otherwise as true_coefficients().
   /// \param codes  −1 (none came) … maxdata of the header's board.second; read_journal() takes others, and

@@ -258,7 +258,8 @@ void for_each_cycle_column(Visitor&& visit) {
         &Cycle::live_decision_time_s);
 }
 
-/// Columns of the table of true slips. A journal does not say how many there are: readers expect these.
+/// Columns of the table of true slips. None can be added: journals do not state the number of columns, and
+/// readers expect these.
 /// \param visit  called as visit(FieldName, member pointer).
 template <typename Visitor>
 void for_each_true_cycle_column(Visitor&& visit) {

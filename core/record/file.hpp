@@ -35,13 +35,14 @@ using base::system_message;
 
 /// Renames without ever replacing, and syncs the folder of `to`. Errors: kUsage if `to` exists, else
 /// kFailure; if only the sync failed, the file has its new name. Without RENAME_NOREPLACE, it links the new
-/// name and removes the old one; if that fails, the old name stays, without an error. Without hard links, it
-/// creates an empty file under the new name and renames over it; a stop in between leaves the empty file.
+/// name and removes the old one; if only the removal fails, the file keeps both names, without an error.
+/// Without hard links, it creates an empty file under the new name and renames over it; a stop in between
+/// leaves the empty file.
 [[nodiscard]] base::Result<void> rename_to_new(const std::filesystem::path& from,
                                                const std::filesystem::path& to,
                                                const FileCalls& calls = system_calls());
 
-/// Creates the missing folders of a path and syncs their names. Errors: kFailure.
+/// Creates the missing folders of a path and syncs their names; nothing for an empty path. Errors: kFailure.
 [[nodiscard]] base::Result<void> make_folders(const std::filesystem::path& folder,
                                               const FileCalls& calls = system_calls());
 

@@ -27,7 +27,7 @@ using Evaluate = std::function<EndRecord(const Record&)>;
 inline constexpr std::string_view kDamagedExtension = ".damaged";
 
 /// Path of a journal's record, in the same folder: NAME.h5 for NAME.journal, NAME.journal.damaged and
-/// NAME.journal.2.damaged.
+/// NAME.journal.2.damaged. Any other extension is replaced too.
 [[nodiscard]] std::filesystem::path record_of(const std::filesystem::path& journal);
 
 /// Result of finalise().
@@ -45,15 +45,16 @@ struct Finalised {
 /// built, otherwise it is an error.
 ///
 /// A damaged journal, or one with a torn end and fewer scans than expected, is renamed to
-/// TEST.journal.damaged instead of removed. Its record holds all readable data, has the status incomplete or
-/// interrupted, and names what is missing.
+/// TEST.journal.damaged instead of removed; one that ends in .damaged already keeps its name. Its record
+/// holds all readable data, has the status incomplete or interrupted, and names what is missing.
 ///
 /// Run it in a process of its own: HDF5 has one global lock and its errors can be fatal. It starts no
 /// threads; `evaluate` may.
 /// \param evaluate  called if the journal has no end, is damaged, or has fewer scans than expected; its
 ///        exceptions pass through. Of a test with an end it replaces results, cycles and spikes. Without it
-///        the results of such a test are absent, with the reason "interrupted" or "damaged". A test without
-///        end has the status interrupted either way.
+///        cycles and spikes are the journal's, and the results of such a test are absent, with the reason
+///        "interrupted" (no end) or "damaged". A test without end has the status interrupted and the cause
+///        kProgramDied either way.
 /// \param longest  time to wait for another process that holds the journal.
 /// \param expected_scans  scans written to the journal; nullopt if unknown. A record with fewer says so in
 ///        its reasons, and has the status incomplete or interrupted.
@@ -91,7 +92,7 @@ struct Finalised {
 
 /// Writes a record whose scans come piece by piece from the journal, which is neither locked nor removed;
 /// otherwise as publish_record(record, path). Errors also as read_journal(), and kFailure if any byte of the
-/// journal is unreadable.
+/// journal is unreadable, those of a torn end included.
 /// \param record  everything except the scans, with an end (contract).
 [[nodiscard]] base::Result<void> publish_journal(const std::filesystem::path& journal, const Record& record,
                                                  const std::filesystem::path& path);

@@ -48,6 +48,7 @@ class GivenFile {
   /// \return whether there was no read error; refused() has its errno.
   [[nodiscard]] bool load() const;
 
+  /// Bytes when it was opened.
   [[nodiscard]] std::uint64_t size() const noexcept { return state_->size; }
   [[nodiscard]] int descriptor() const noexcept { return state_->file.get(); }
   /// errno of the latest failed read; 0 if none failed.

@@ -51,7 +51,7 @@ class Handle {
 
   [[nodiscard]] hid_t get() const noexcept { return id_; }
 
-  /// Closes now. \throws HdfError if that fails: buffers may be lost.
+  /// Closes now. \throws HdfError if that fails (buffers may be lost) or it holds no id.
   void close(const std::string& what) {
     if (Close(std::exchange(id_, -1)) < 0) throw_refused(what);
   }

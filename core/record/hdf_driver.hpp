@@ -21,9 +21,9 @@ void write_through(const PropertyHandle& access, const FileCalls& calls);
 /// cannot be read; see GivenFile::refused().
 [[nodiscard]] bool is_hdf5(const GivenFile& file);
 
-/// Opens an existing file for reading through its open descriptor, without HDF5's lock. Take the file from
-/// open_shared(), which excludes writers and finds read errors first. On a damaged file HDF5 may crash or
-/// never return.
+/// Opens an existing file for reading through its open descriptor, without HDF5's lock; the handle keeps it
+/// open. Take the file from open_shared(), which excludes writers and finds read errors first. On a damaged
+/// file HDF5 may crash or never return.
 /// \param path  must exist, since HDF5 resolves it; nothing is read from there.
 /// \throws HdfError if it is not an HDF5 file or its structure cannot be read.
 [[nodiscard]] FileHandle open_hdf5(const GivenFile& file, const std::filesystem::path& path);

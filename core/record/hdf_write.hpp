@@ -30,7 +30,7 @@ void finish_file(FileHandle file);
 
 /// Variable-length UTF-8 attribute.
 void write_attribute(hid_t object, const std::string& name, std::string_view text);
-/// Array of variable-length UTF-8 texts as an attribute.
+/// Array of variable-length UTF-8 texts as an attribute. \param texts  not empty (HdfError).
 void write_attribute(hid_t object, const std::string& name, const std::vector<std::string>& texts);
 /// Number as an attribute, without unit.
 template <typename T>

@@ -54,16 +54,17 @@ class JournalWriter {
 
   /// \param first  not before the end of the scans written so far (contract).
   /// \param raw  consecutive, not empty; counts are whole numbers in 0 … maxdata (contract).
+  /// \param stamp  only its monotonic time is stored.
   [[nodiscard]] base::Result<void> append_scans(daq::ScanIndex first, std::span<const double> raw,
                                                 const daq::ClockStamp& stamp);
-  /// The noise-free force of consecutive scans that are in the journal already (model::TrueForce).
-  /// \param first  of scans that no earlier call had; read_journal() takes an overlap for damage.
+  /// The noise-free force of consecutive scans that are in the journal already (model::TrueForce); NaN where
+  /// unknown. \param first  as in EntryBuilder::true_coefficients().
   [[nodiscard]] base::Result<void> append_true_coefficients(daq::ScanIndex first,
                                                             std::span<const double> coefficient);
   /// Codes of the second channel, daq::SecondChannel::kNoCode where none came. Otherwise as
   /// append_true_coefficients().
-  /// \param codes  at most maxdata of the header's board.second; read_journal() takes others, and any without
-  ///        board.second, for damage.
+  /// \param codes  kNoCode … maxdata of the header's board.second; read_journal() takes others, and any
+  ///        without board.second, for damage.
   [[nodiscard]] base::Result<void> append_second(daq::ScanIndex first, std::span<const std::int32_t> codes);
   [[nodiscard]] base::Result<void> append_spikes(std::span<const daq::ScanIndex> spikes);
   [[nodiscard]] base::Result<void> append_gap(const daq::Gap& gap);

@@ -29,13 +29,13 @@ class JournalLock {
 };
 
 /// Tries to lock an open journal, without waiting. \return false if another holder has the lock; true also
-/// where the file system has no locks.
+/// after any other error, as where the file system has no locks.
 [[nodiscard]] bool lock_journal(int descriptor, const FileCalls& calls = system_calls()) noexcept;
 
 /// Removes a journal that is empty or consists of a torn end only (JournalEntries::torn_end()). A stop before
 /// the header was synced leaves such a file; it contains no data. Other journals are not changed.
-/// \return whether it was removed. Errors: kFailure if it cannot be read or removed, or if another process
-/// holds it for longer than `longest`.
+/// \return whether it was removed. Errors: kFailure if it does not exist, cannot be read or removed, or if
+/// another process holds it for longer than `longest`.
 [[nodiscard]] base::Result<bool> remove_if_empty(const std::filesystem::path& journal,
                                                  std::chrono::milliseconds longest = {});
 

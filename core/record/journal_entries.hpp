@@ -53,6 +53,7 @@ class JournalEntries {
   [[nodiscard]] const std::optional<UnreadBytes>& torn_end() const noexcept { return torn_end_; }
   /// Read error of the disk with its remedy; empty if there was none. Such bytes do not count as damaged.
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
+  /// Bytes when it was opened; what is appended later is not read.
   [[nodiscard]] std::uint64_t file_size() const noexcept { return file_size_; }
 
  private:

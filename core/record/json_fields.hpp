@@ -32,6 +32,7 @@ template <typename T>
 concept Many = std::is_same_v<T, std::string> || std::is_same_v<T, std::vector<double>> ||
     std::is_same_v<T, std::vector<std::string>>;
 
+/// A value in JSON. A double that is NaN becomes null, an infinite one "inf" or "-inf".
 inline Json encode(double value) {
   if (std::isfinite(value)) return value;
   if (std::isnan(value)) return nullptr;
@@ -49,6 +50,7 @@ Json encode(const T& value) {
   }
 }
 
+/// Inverse of encode(). \throws std::exception for JSON of another type.
 inline void decode(const Json& from, double& value) {
   if (from.is_null()) {
     value = std::numeric_limits<double>::quiet_NaN();
@@ -100,13 +102,16 @@ void take(const Json& object, std::string_view key, T& value) {
   }
 }
 
+/// Visitor for for_each_field(): put() of each field under its name.
 inline auto putter(Json& object) {
   return [&object](const FieldName& name, const auto& value) { put(object, name.name, value); };
 }
+/// Visitor for for_each_field(): take() of each field from under its name.
 inline auto taker(const Json& object) {
   return [&object](const FieldName& name, auto& value) { take(object, name.name, value); };
 }
 
+/// An object with all fields, by put().
 template <typename Fields>
 Json fields_to_json(const Fields& fields) {
   Json object = Json::object();
@@ -130,18 +135,22 @@ inline std::string dump(const Json& value) {
 /// Number of columns of a cycle in the oldest journals; later columns may be missing.
 inline constexpr std::size_t kFirstCycleColumns = 15;
 
+/// Number of columns of a cycle in this version.
 inline std::size_t cycle_columns() {
   std::size_t count = 0;
   for_each_cycle_column([&](const FieldName&, auto) { ++count; });
   return count;
 }
 
+/// The columns of a cycle, in the order of for_each_cycle_column().
 inline Json cycle_to_array(const detect::Cycle& cycle) {
   Json array = Json::array();
   for_each_cycle_column([&](const FieldName&, auto member) { array.push_back(encode(cycle.*member)); });
   return array;
 }
 
+/// Inverse of cycle_to_array(). Later columns that are missing have their defaults; columns behind the known
+/// ones are ignored. \throws std::exception if one of the first kFirstCycleColumns is missing.
 inline detect::Cycle cycle_from_array(const Json& array) {
   detect::Cycle cycle;
   std::size_t i = 0;

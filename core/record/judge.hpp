@@ -11,7 +11,9 @@
 
 namespace stickslip::record {
 
-/// Judges an HDF5 file: fills in the verdict except the judgement.
+/// Judges a file that is no journal, whether it is HDF5 or not: fills in the verdict except the judgement.
+/// \param given  open, locked and loaded. \param path  its path; its extension may tell that it was a record.
+/// \throws std::bad_alloc
 void judge_record(const GivenFile& given, const std::filesystem::path& path, Verdict& verdict);
 /// Judges a journal, read by system_calls(): fills in the verdict except the judgement, the checksums and
 /// scans_committed.
@@ -20,7 +22,8 @@ void judge_journal(const std::filesystem::path& path, Verdict& verdict);
 // For records.
 
 /// Reads every data set under `file`, except texts of variable length, to locate damage: those in chunks
-/// chunk by chunk, others as a whole.
+/// chunk by chunk, others as a whole. A chunk that is not stored is damage, and so is what would be
+/// more than 256 MiB to read at once. After 100 damaged chunks of a data set the rest of it is not read.
 void judge_chunks(hid_t file, Verdict& verdict);
 /// Judges the rows of raw: order of the scans, jumps without a gap, values that the board cannot give, and
 /// what is computed from other columns (time, force, flag of saturation, second channel). If there is a scan,

@@ -41,9 +41,10 @@ void read_identity(hid_t entry, Record& record);
 /// \return SHA-256 of the raw values as the file stores them (u16, u32 or f64, little-endian), hexadecimal.
 [[nodiscard]] std::string write_raw(hid_t entry, const Record& record, const ScanSource& scans,
                                     const std::function<void()>& take_end);
-/// Reads scan indices, raw values and spikes; a file without flags has no spikes.
+/// Reads quantity, scan indices, raw values and spikes; a file without flags has no spikes. Throws HdfError
+/// if the scans do not rise strictly or a raw value is not finite.
 void read_raw(hid_t entry, Record& record);
-/// Reads record.raw alone.
+/// Reads record.raw alone. Throws HdfError if a value is not finite.
 void read_raw_values(hid_t entry, Record& record);
 /// Reads into board.quantity which quantity the raw values are.
 void read_quantity(hid_t entry, daq::BoardInfo& board);
@@ -51,8 +52,8 @@ void read_quantity(hid_t entry, daq::BoardInfo& board);
 /// noise-free force, if the source has it and the file has the group truth.
 void verify_scans(hid_t entry, const daq::BoardInfo& board, const ScanSource& scans);
 
-/// Writes the second channel, if there is one: columns of raw, and instrument/second. Expects the groups raw
-/// and instrument to be written.
+/// Writes the second channel, if record.header.board has one: instrument/second, and columns of raw if
+/// `scans` have codes. Expects the groups raw and instrument to be written.
 void write_second(hid_t entry, const Record& record, const ScanSource& scans);
 /// Reads the settings of the second channel into header.board.second, which stays absent if there is none.
 void read_second_channel(hid_t entry, Record& record);
@@ -63,8 +64,8 @@ void read_second(hid_t entry, Record& record);
 void verify_second(hid_t entry, const Record& record, const ScanSource& scans);
 
 void write_tables(hid_t entry, const Record& record);  ///< cycles, gaps, events
-void read_tables(hid_t entry, Record& record);
-void read_cycles(hid_t entry, Record& record);  ///< The part of read_tables() without gaps and events.
+void read_tables(hid_t entry, Record& record);         ///< A table that the file lacks is empty.
+void read_cycles(hid_t entry, Record& record);         ///< The part of read_tables() without gaps and events.
 /// Throws where read_tables() would; keeps no cycles in memory.
 void check_tables(hid_t entry);
 
@@ -72,7 +73,8 @@ void check_tables(hid_t entry);
 inline constexpr const char* kDiagnostics = "diagnostics";
 
 void write_results(hid_t entry, const analysis::TestResults& results);
-/// Regime, rung and findings are always read. In a file without results all are absent, with the reason.
+/// Regime, rung, misfit_place and findings are always read. In a file without results all are absent, with
+/// the reason.
 /// \param only  names of the estimates to read, the others are absent; empty: all.
 [[nodiscard]] analysis::TestResults read_results(hid_t entry, std::span<const std::string> only = {});
 
@@ -81,6 +83,7 @@ void read_instrument(hid_t entry, Record& record);
 
 /// \param sha256  of the raw values, from write_raw().
 void write_process(hid_t entry, const Record& record, const std::string& sha256);
+/// Reads header.process, sha256, and of `end` status, reasons, cause, unloaded level and compute time.
 void read_process(hid_t entry, Record& record);
 
 /// Writes the group truth, with the noise-free force of `scans` if they have it. Expects raw to be written.

@@ -38,7 +38,7 @@ class ApartReader {
   /// as read_record(). Three things differ: bytes of texts that are no UTF-8 are replaced; an absent uuid is
   /// "none"; scans missing without a gap become gaps with the cause unknown.
   /// Errors as that function, and: kUsage if reading exceeds a limit or kills the child; kInterrupted if
-  /// given_up() was true; kFailure if no child can be started.
+  /// given_up() was true; kFailure if no child can be started or its answer makes no sense.
   /// \param given_up  called ten times a second and at each signal; true gives up. Empty: never.
   [[nodiscard]] base::Result<Record> read(const std::filesystem::path& path, const base::WorkLimits& limits,
                                           const std::function<bool()>& given_up = {});
@@ -67,7 +67,8 @@ class ApartReader {
 [[nodiscard]] std::string read_facts_for_parent(std::string_view path, int memory_file);
 
 /// Serves as a reader, and never returns, if the first argument is one of the three options and standard
-/// input is a socket. Otherwise returns at once.
+/// input is a socket. Otherwise returns at once; also if arguments follow an option other than
+/// kResultsReaderOption.
 void serve_if_reader(int count, char** arguments);
 
 /// From now on the functions below use children: this program, started again. Each thread has at most two for
@@ -84,6 +85,7 @@ void read_records_apart(std::function<bool()> given_up = {});
                                                      std::span<const std::string> next = {});
 
 /// read_record_apart() of files[index] with the files after it as `next`, for a loop over all files.
+/// \param index  < files.size().
 [[nodiscard]] base::Result<Record> read_record_in_turn(std::span<const std::string> files, std::size_t index);
 
 /// As read_record_apart(), but reads only what read_without_scans() does.

@@ -17,10 +17,11 @@ namespace stickslip::record {
 /// call read_record_apart() (read_apart.hpp). A reduced file may lack results, cycles, flags, gaps, events
 /// and truth; they are then absent from the record, the results with a reason.
 /// \return the record with `end` and `sha256` set. Errors are one line that names the file and what is wrong:
-/// kUsage if it does not exist, is no HDF5 file, no record, of a version that is not read, truncated or, as
-/// far as HDF5 notices, damaged, has data of other types or shapes, lacks the scan rate or the calibration of
-/// its counts, or has raw values that do not match their checksum; kBusy if a program is writing it;
-/// kNoPermission; kFailure if it cannot be read.
+/// kUsage if it does not exist, is no regular file, no HDF5 file, no record, of a version that is not read,
+/// truncated or, as far as HDF5 notices, damaged, has data of other types, shapes or ranges, lacks the scan
+/// rate or the calibration of its counts (the load cell's or the board's polynomial), or has raw values that
+/// do not match their checksum; kBusy if a program is writing it; kNoPermission; kFailure if it cannot be
+/// read.
 [[nodiscard]] base::Result<Record> read_record(const std::filesystem::path& path,
                                                const FileCalls& calls = system_calls());
 
@@ -34,7 +35,7 @@ namespace stickslip::record {
                                                       const FileCalls& calls = system_calls());
 
 /// Reads a record without scans, cycles, gaps, events and truth, which stay empty; clock anchors and results
-/// are read. Not verified are the checksum of the raw values, and that scan rate and calibration are there.
+/// are read. Not verified are the checksum of the raw values, and that scan rate and polynomial are there.
 /// Otherwise errors as read_record(), but damage in what is not read is not found. For files from elsewhere:
 /// read_facts_apart().
 [[nodiscard]] base::Result<Record> read_facts(const std::filesystem::path& path,

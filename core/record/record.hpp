@@ -53,7 +53,7 @@ struct TesterFacts {
   std::optional<double> pull_speed_m_per_s;
   std::optional<double> stiffness_N_per_m;
   std::string speed_course;  ///< model::PullSpeed::text(); empty for a constant speed.
-  // As model::Transducer; all absent if it is not known.
+  // As model::Transducer. Load cell and filter are each known by their frequency.
   std::optional<double> load_cell_frequency_Hz;
   std::optional<double> load_cell_damping;
   std::optional<double> anti_alias_Hz;
@@ -63,8 +63,9 @@ struct TesterFacts {
   /// Sets the parts that it has; the others stay.
   void set_transducer(const model::Transducer& transducer);
   /// Conversion. An absent mass or gravity becomes model::Tester's default; absent speed and stiffness stay
-  /// absent, as does a course that cannot be parsed. A transducer whose numbers are out of range counts as
-  /// not known.
+  /// absent, as does a course that cannot be parsed. Beside a frequency an absent damping or order becomes
+  /// the typical one; without it they do not count. A transducer with a number out of range counts as not
+  /// known, load cell and filter.
   [[nodiscard]] model::Tester tester() const;
   bool operator==(const TesterFacts&) const = default;
 };
@@ -100,7 +101,8 @@ struct PlanFacts {
   std::optional<double> end_coefficient;
   std::optional<double> end_dwell_s;  ///< SegmenterSettings::unload_dwell_s.
   std::optional<double> no_motion_dwell_s;
-  /// Level of the unloaded cell before the test, to which trigger and end are relative; absent if unknown.
+  /// Coefficient of the unloaded cell before the test, to which trigger and end are relative; absent if
+  /// unknown.
   std::optional<double> unloaded_level{};
 
   bool operator==(const PlanFacts&) const = default;
@@ -189,7 +191,8 @@ struct EndRecord {
   std::optional<std::int64_t> end_realtime_ns;  ///< realtime_at() the end of the last scan.
   std::optional<double> compute_time_s;         ///< Time that the evaluation took; absent if not measured.
   std::optional<daq::LatencyHistogram> read_latency;  ///< How late the blocks were read.
-  /// Level of the unloaded cell at the end; absent unless the test ended by unloading with a quiet force.
+  /// Coefficient of the unloaded cell at the end; absent unless the test ended by unloading with a quiet
+  /// force.
   std::optional<double> unloaded_level{};
   analysis::TestResults results;
   // Final; set_end() moves both into the record, in place of those noted during the test.
@@ -199,7 +202,7 @@ struct EndRecord {
 };
 
 /// Time of a scan, ns since 1970: start_realtime_ns plus the scans from trigger_scan on at the granted rate,
-/// independent of later clock steps. Nullopt if either is absent or the time is out of range.
+/// independent of later clock steps. Nullopt if one of the three is absent or the time is out of range.
 [[nodiscard]] std::optional<std::int64_t> realtime_at(const RecordHeader& header,
                                                       daq::ScanIndex scan) noexcept;
 

@@ -56,6 +56,8 @@ struct Verdict {
   std::string sha256_found;   ///< Checksum computed from the raw values of a record.
   std::vector<Finding> findings;
 
+  // Each adds a finding; both texts may quote the file and are made printable.
+
   void note(std::string_view place, std::string_view text) { add(Finding::Weight::kNote, place, text); }
   void incomplete(std::string_view place, std::string_view text) {
     add(Finding::Weight::kIncomplete, place, text);
@@ -63,7 +65,6 @@ struct Verdict {
   void damage(std::string_view place, std::string_view text) { add(Finding::Weight::kDamage, place, text); }
 
  private:
-  /// Adds a finding; both texts may quote the file and are made printable.
   void add(Finding::Weight weight, std::string_view place, std::string_view text) {
     findings.push_back({weight, base::one_line(place, place.size()), base::one_line(text, text.size())});
   }

@@ -17,8 +17,8 @@ inline constexpr double kOutlierSigmas = 5.0;
 
 /// Fast path: true if the window certainly has no outlier, since its misfit to a cubic is below
 /// kOutlierSigmas σ. Computed from the orthogonal polynomials of degree 4, 5 and 6 over seven points [Fisher
-/// and Yates, Statistical Tables, 1938]. Within rounding errors of the limit it returns false;
-/// cubic_outlier() then decides.
+/// and Yates, Statistical Tables, 1938]. If it returns false, as also within rounding errors of the limit,
+/// cubic_outlier() decides.
 [[nodiscard]] inline bool follows_a_cubic(std::span<const double, kCubicWindow> v, double sigma) noexcept {
   constexpr double kRoundings = 1e-9;
   const double outer = v[0] + v[6];

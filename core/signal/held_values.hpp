@@ -29,20 +29,23 @@ using LeftOut = std::function<bool(std::size_t scan)>;
 struct HeldValues {
   double lowest = 0.0;   ///< Lower end of the band of values.
   double highest = 0.0;  ///< Upper end.
+  /// Scans in the band; of a frozen value those of the longest stretch alone.
   std::size_t scan_count = 0;
-  std::size_t run_count = 0;  ///< Stretches of consecutive scans in the band.
-  std::size_t first = 0;      ///< Index of the first value of the longest stretch.
-  std::size_t longest = 0;    ///< Number of scans in it.
+  /// Stretches of consecutive scans in the band, which a scan left out ends; 1 for a frozen value.
+  std::size_t run_count = 0;
+  std::size_t first = 0;    ///< Index of the first value of the longest stretch.
+  std::size_t longest = 0;  ///< Number of scans in it.
 
   [[nodiscard]] bool holds(double value) const noexcept { return value >= lowest && value <= highest; }
 };
 
-/// Finds the highest level of the trace if scans stay there more often than noise lets them. Of T scans in a
-/// band below the largest value, C are followed by another scan in it. Noise alone does so with probability
-/// exp(−T·KL(C/T, p)) at most [Chernoff 1952]. Multiplied by N² (any of N scans may be the largest, and T any
-/// number up to N) and by the five bands, this must not exceed kFalseAlarm. The bands are equal values, two
-/// steps, σ/4, σ and 2 σ; the result is the one with the most scans. A clipped signal that gets as much noise
-/// behind the amplifier as before it is not told from a sound one.
+/// Finds the highest level of the trace if scans stay there more often than noise lets them. T scans in a
+/// band below the largest value have a scan behind them that is not left out; C of those are in the band.
+/// Noise alone does so with probability exp(−T·KL(C/T, p)) at most [Chernoff 1952]. Multiplied by N² (any of
+/// N scans may be the largest, and T any number up to N) and by the five bands, this must not exceed
+/// kFalseAlarm. The bands are equal values, two steps, σ/4, σ and 2 σ; the result is the one that passes with
+/// the most scans. A clipped signal that gets as much noise behind the amplifier as before it is not told
+/// from a sound one.
 /// \param step  of the converter, or the smallest difference of neighbours as measured.
 /// \return nullopt if there is none; also unless the largest value and the step are positive, and unless 68
 /// consecutive scans outside the band show noise clearly above that of rounding.
@@ -57,10 +60,11 @@ struct HeldValues {
 [[nodiscard]] std::optional<HeldValues> frozen_values(const base::LongColumn<double>& values,
                                                       const LeftOut& left_out, double step);
 
-/// White noise of a scan, as a standard deviation in steps of the converter, less that of rounding; from the
-/// values of at least a third of the largest. Half a step reads below a quarter with a probability < 1e-6.
-/// \param step  of the converter; ≤ 0 if unknown. It is then the smallest difference of neighbours, if all
-/// their differences are multiples of that and a tenth of them is zero.
+/// White noise of a scan, as a standard deviation in steps of the converter; the variance of rounding, 1/12,
+/// is subtracted first, and the result is 0 if no more is left. From the values of at least a third of the
+/// largest. Half a step reads below a quarter with a probability < 1e-6.
+/// \param step  of the converter; ≤ 0 if unknown. It is then the smallest non-zero difference of neighbours,
+/// if all their differences are multiples of that and at least a tenth of them is zero.
 /// \param held  values to leave out; nullopt: none.
 /// \return nullopt if there are fewer than eight blocks of 64 fourth differences, if no value is positive, or
 /// if the step stays unknown.

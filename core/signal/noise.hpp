@@ -20,7 +20,7 @@ namespace stickslip::signal {
 /// at 17.5 scans a cycle, and √70 of white noise.
 class FourthDifferences {
  public:
-  static constexpr std::size_t kBlock = 64;
+  static constexpr std::size_t kBlock = 64;      ///< Differences of a block.
   static constexpr double kVarianceGain = 70.0;  ///< Σ binomial(4,k)².
 
   /// \return true if block() is complete; the next difference begins a new one.
@@ -34,7 +34,7 @@ class FourthDifferences {
     in_block_ = 0;
     return true;
   }
-  /// To be called at a gap: no difference spans it.
+  /// To be called at a gap: no difference spans it. The block goes on.
   void gap() noexcept { seen_ = 0; }
 
   /// Absolute differences of the block; complete after an add() that returned true, until the next one.
@@ -109,7 +109,7 @@ template <typename Values>
 }
 
 /// Resolution of a trace whose converter is unknown: its smallest non-zero step between consecutive values; 0
-/// if it is constant. \tparam Values  any range of double.
+/// if it is constant or has fewer than two values. \tparam Values  any range of double.
 template <typename Values>
 [[nodiscard]] double smallest_step(const Values& values) {
   double smallest = 0.0;

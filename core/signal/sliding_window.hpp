@@ -23,7 +23,7 @@ class SlidingWindow {
     room_[end_++] = value;
   }
 
-  /// Valid until the next push().
+  /// Valid until the next push(). A changed value stays changed while it is in the window.
   [[nodiscard]] std::span<const double, kWidth> values() const noexcept {
     return std::span<const double, kWidth>{room_.data() + (end_ - kWidth), kWidth};
   }

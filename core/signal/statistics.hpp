@@ -16,7 +16,7 @@ namespace stickslip::signal {
 inline constexpr double kRoundingSigma = 0.28867513459481287;
 
 /// Upper median: of an even number of values the higher of the two in the middle. Does not allocate.
-/// \param values  not empty; reordered.
+/// \param values  not empty, no NaN; reordered.
 [[nodiscard]] inline double median(std::span<double> values) noexcept {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());

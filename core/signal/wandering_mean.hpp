@@ -22,7 +22,7 @@ namespace stickslip::signal {
 /// averaged, so that memory and time are bounded. Never allocates.
 class WanderingMean {
  public:
-  static constexpr std::size_t kMost = 512;
+  static constexpr std::size_t kMost = 512;  ///< Values, or means of neighbours, that are stored.
 
   void add(double value) noexcept;
   [[nodiscard]] double count() const noexcept { return values_.count; }

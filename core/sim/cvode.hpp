@@ -66,6 +66,7 @@ class Cvode {
 
   /// Sets the absolute local error of each variable, > 0, that a step may have. Call before restart().
   void set_tolerance(const OdeState& tolerance);
+  /// Sets the longest internal step, > 0; without a call there is no limit. restart() keeps it.
   void set_longest_step(double longest_s);
 
   /// Starts again at t = 0 with this state. Widened tolerances and the counts stay.

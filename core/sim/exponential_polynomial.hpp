@@ -58,8 +58,11 @@ class ExponentialPolynomial {
   [[nodiscard]] ExponentialPolynomial response(const model::Oscillator& oscillator) const;
 
   [[nodiscard]] int powers() const noexcept { return powers_; }  ///< Highest k + 1; 0: no polynomial.
+  /// Number of different λ; one whose weights have cancelled counts too.
   [[nodiscard]] int decays() const noexcept { return decays_; }
+  /// a_k. \param k  0 … kPowers − 1; a_k = 0 from k = powers() on.
   [[nodiscard]] double power(int k) const { return power_.at(static_cast<std::size_t>(k)); }
+  /// \param index  0 … decays() − 1.
   [[nodiscard]] const Decay& decay(int index) const { return decay_.at(static_cast<std::size_t>(index)); }
   [[nodiscard]] bool is_constant() const noexcept { return powers_ <= 1 && decays_ == 0; }
 

@@ -12,8 +12,8 @@
 /// capture. So a belt that starts or stops at once begins a slip that is no onset.
 /// The belt's speed here is |v| at the start of the present piece of the motion, but never less than a
 /// hundredth of the highest |v| at the ends of the belt's segments, also while the belt rests.
-/// K of a slip is the coefficient of steady sliding at that speed, S that of the spring at the onset, but at
-/// least K.
+/// K is the coefficient of steady sliding at that speed, or μ₀ if that speed is 0. S is the coefficient of
+/// the spring at the start of the mode, thus at the onset of a slip, but at least K.
 ///
 /// A run starts with a contact that has not rested. Ageing law: θ = 10⁻³ accuracy/ω₀, so short that the
 /// motion does not differ from that with θ = 0. Slip law: θ of a contact that does not slide never changes,

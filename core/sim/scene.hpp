@@ -114,7 +114,7 @@ struct Scene {
   bool damping = false;
   bool one_way_coupling = false;
   PaperSettings paper;  ///< Effects that change S and K: `scatter`, `first_peak`, `contact_ageing`.
-  std::optional<OnsetConvention> onset_convention;
+  std::optional<OnsetConvention> onset_convention;    ///< Absent: kSpring.
   std::optional<double> velocity_dependence_s_per_m;  ///< Effect `velocity_dependence`: dK/dV.
   std::optional<Stribeck> stribeck;
   std::optional<RateAndState> rate_and_state;
@@ -184,8 +184,9 @@ struct Pull {
 
 /// Belt speed over time, counted from the first movement; nullopt for a steady pull and for a belt that never
 /// moves forwards. Of `constant_speed` it shows pull and stop, not the return of the carriage, whose end
-/// depends on the force; if stop_s is 0 the last speed goes on for ever. Curves are approximated by lines
-/// within 0.1 % of the speed's change. nullopt too if it needs more points than PullSpeed::kMostPoints.
+/// depends on the force. If stop_s is 0, and after the last point of `piecewise_speed`, the last speed goes
+/// on for ever. Curves are approximated by lines within 0.1 % of the speed's change. nullopt too if it needs
+/// more points than PullSpeed::kMostPoints.
 [[nodiscard]] std::optional<model::PullSpeed> pull_speed_of(const Scene& scene);
 
 /// True scan rate at this nominal rate, with the clock's error.

@@ -7,8 +7,8 @@
 ///
 /// Each value becomes the normal score of its rank among the values before it,
 /// z = Φ⁻¹((R − ½)/n) with the rank R of n values [McDonald, Naval Research Logistics 37:627–646, 1990].
-/// Upper arm: max(0, · + z − k), lower arm: max(0, · − z − k); an arm above h is an alarm and restarts at 0
-/// [Page 1954; Hawkins & Olwell 1998].
+/// Upper arm: max(0, · + z − k), lower arm: max(0, · − z − k); an arm above h is an alarm, and both restart
+/// at 0 [Page 1954; Hawkins & Olwell 1998].
 ///
 /// z − k is ln(Φ'(z − 2k)/Φ'(z))/2k: the log-likelihood ratio of a normal distribution whose mean is 2k
 /// instead of 0. Equal values are one cell of that distribution, from the share a of values below them to the

@@ -77,7 +77,7 @@ struct ChartPoint {
   std::string time;
   std::string file;
   double value = 0.0;
-  // Arms with this value, in standard deviations.
+  // Arms with this value, in standard deviations. At an alarm the arm that did not tell it is 0.
   double upper = 0.0;
   double lower = 0.0;
 };
@@ -89,7 +89,9 @@ struct ChartState {
   std::string latest_file;
   std::int64_t outside_count = 0;  ///< Values beyond Shewhart limits.
   std::optional<StandingAlarm> alarm;
-  std::string no_value_reason;    ///< Why the latest test gave no value; empty if it did.
+  /// Why the latest test gave no value, or that there was none since a new baseline; empty if it gave one,
+  /// and before the first test.
+  std::string no_value_reason;
   std::deque<ChartPoint> points;  ///< The latest kMostPoints, oldest first.
   static constexpr std::size_t kMostPoints = 200;
 
