@@ -4,7 +4,9 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -13,7 +15,9 @@
 #include "io/new_file.hpp"
 #include <nlohmann/json.hpp>
 
+#include "core/analysis/taps.hpp"
 #include "core/base/text.hpp"
+#include "core/base/wording.hpp"
 #include "core/evaluation/analyse.hpp"
 #include "core/record/finaliser.hpp"
 #include "core/record/iso_time.hpp"
@@ -28,8 +32,9 @@ using analysis::Characterisation;
 using analysis::TesterEstimate;
 
 struct CharacteriseOptions {
-  std::vector<std::string> files;  ///< Records of ring-downs.
+  std::vector<std::string> files;  ///< Records of ring-downs, or of taps.
   std::string output;              ///< Empty: none.
+  bool taps = false;
   bool json = false;
 };
 
@@ -76,6 +81,15 @@ double standard_error(const Eigen::Matrix3d& covariance, Eigen::Index i) {
   return std::sqrt(covariance(i, i));
 }
 
+/// \param of_what  "ring-downs"
+std::string agreement_of(const Characterisation& result, std::string_view of_what) {
+  if (result.freedom == 0) return {};
+  return fmt::format(
+      "chi-squared {:.2f} for {} degrees of freedom, probability {:.2g}{}\n", result.chi_squared,
+      result.freedom, result.probability(),
+      result.probability() < analysis::kDisagreement ? fmt::format(": the {} disagree", of_what) : "");
+}
+
 std::string table_of(const std::vector<std::string>& files, const RingDowns& ring_downs,
                      const Characterisation& result) {
   std::string text;
@@ -92,12 +106,7 @@ std::string table_of(const std::vector<std::string>& files, const RingDowns& rin
   const estimate::SharedPrior::Coupling& mean = result.coupling;
   line(mean.omega, std::sqrt(mean.covariance(0, 0)), mean.gamma_over_2omega, std::sqrt(mean.covariance(1, 1)),
        "the tester");
-  if (result.freedom > 0) {
-    text += fmt::format("chi-squared {:.2f} for {} degrees of freedom, probability {:.2g}{}\n",
-                        result.chi_squared, result.freedom, result.probability(),
-                        result.probability() < analysis::kDisagreement ? ": the ring-downs disagree" : "");
-  }
-  return text;
+  return text + agreement_of(result, "ring-downs");
 }
 
 std::string json_of(const std::vector<std::string>& files, const RingDowns& ring_downs,
@@ -128,7 +137,118 @@ std::string json_of(const std::vector<std::string>& files, const RingDowns& ring
   return io::json_document(all);
 }
 
+/// A tap, and where it is.
+struct TapOfFile {
+  std::string file;
+  analysis::Tap tap;
+};
+
+struct TapsOfFiles {
+  std::vector<TapOfFile> taps;
+  std::vector<std::string> refused;  ///< "FILE, 0.512 s: …"
+  double lowest_rate_Hz = 0.0;
+  double highest_rate_Hz = 0.0;
+};
+
+/// Frequency and damping of the cell do not depend on the unit of the readings.
+base::Result<TapsOfFiles> read_taps(const std::vector<std::string>& files) {
+  TapsOfFiles found;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const base::Result<record::Record> record = record::read_record_in_turn(files, i);
+    if (!record) return tl::unexpected(record.error());
+    const double rate_Hz = record->header.board.scan_rate_granted_Hz;
+    if (!(rate_Hz > 0.0)) return base::usage_error("{}: the record has no scan rate", files[i]);
+    found.lowest_rate_Hz = i == 0 ? rate_Hz : std::min(found.lowest_rate_Hz, rate_Hz);
+    found.highest_rate_Hz = std::max(found.highest_rate_Hz, rate_Hz);
+    const std::vector<daq::ScanIndex>& scans = record->scan;
+    for (std::size_t first = 0, end = 0; first < scans.size(); first = end) {
+      for (end = first + 1; end < scans.size() && scans[end] == scans[end - 1] + 1; ++end) {
+      }
+      const double begin_s = static_cast<double>(scans[first] - scans.front()) / rate_Hz;
+      analysis::Taps taps = analysis::find_taps(std::span{record->raw}.subspan(first, end - first), rate_Hz);
+      for (analysis::Tap& tap : taps.taps) {
+        tap.at_s += begin_s;
+        found.taps.push_back({files[i], tap});
+      }
+      for (const analysis::RefusedTap& refused : taps.refused)
+        found.refused.push_back(
+            fmt::format("{}, {:.3f} s: {}", base::printable(files[i]), refused.at_s + begin_s, refused.why));
+    }
+  }
+  if (!found.taps.empty()) return found;
+  if (found.refused.empty())
+    return base::usage_error("{}: no tap is found: no reading stands out of the noise",
+                             base::printable(files.front()));
+  return base::usage_error("no tap tells the load cell: {}", found.refused.front());
+}
+
+Json number_and_error(const analysis::CellEstimate& cell) {
+  return {{"load_cell_frequency", *cell.frequency_Hz.value},
+          {"load_cell_frequency_standard_error", *cell.frequency_Hz.standard_error},
+          {"load_cell_damping", *cell.damping_ratio.value},
+          {"load_cell_damping_standard_error", *cell.damping_ratio.standard_error}};
+}
+
+std::string text_of(const analysis::CellEstimate& cell) {
+  return fmt::format("{:10.3f} +- {:.3f} Hz   damping {:.5f} +- {:.5f}", *cell.frequency_Hz.value,
+                     *cell.frequency_Hz.standard_error, *cell.damping_ratio.value,
+                     *cell.damping_ratio.standard_error);
+}
+
+analysis::CellEstimate cell_of(const TesterEstimate& ring) {
+  return analysis::cell_of(
+      {ring.omega, ring.gamma_over_2omega, Eigen::Matrix2d{ring.covariance.topLeftCorner<2, 2>()}});
+}
+
+std::string table_of(const TapsOfFiles& found, const Characterisation& result,
+                     const analysis::CellEstimate& cell) {
+  std::string text;
+  for (const TapOfFile& one : found.taps)
+    text += fmt::format("{}   {:.3f} s, {}\n", text_of(cell_of(one.tap.ring)), one.tap.at_s,
+                        base::printable(one.file));
+  text += fmt::format("{}   the load cell\n", text_of(cell));
+  text += agreement_of(result, "taps");
+  for (const std::string& refused : found.refused) text += fmt::format("left out: {}\n", refused);
+  const double frequency_Hz = *cell.frequency_Hz.value;
+  text += fmt::format(
+      "\nIn the configuration:\n"
+      "  [tester]\n"
+      "  load_cell_frequency = \"{0:.6g} Hz\"\n"
+      "  load_cell_damping = {1:.4g}\n"
+      "or: --load-cell-frequency \"{0:.6g} Hz\" --load-cell-damping {1:.4g}\n",
+      frequency_Hz, *cell.damping_ratio.value);
+  if (found.lowest_rate_Hz == found.highest_rate_Hz)
+    text += fmt::format(
+        "At {:.6g} scans a second a cell of {:.6g} Hz looks the same. Taps at another scan rate tell.\n",
+        found.lowest_rate_Hz, analysis::alias_Hz(frequency_Hz, found.lowest_rate_Hz));
+  return text;
+}
+
+base::Result<std::string> characterise_cell(const CharacteriseOptions& options) {
+  const base::Result<TapsOfFiles> found = read_taps(options.files);
+  if (!found) return tl::unexpected(found.error());
+  std::vector<TesterEstimate> rings;
+  for (const TapOfFile& one : found->taps) rings.push_back(one.tap.ring);
+  const std::optional<Characterisation> result = analysis::pool_ring_downs(rings);
+  if (!result) return base::failure("the taps have no finite mean");
+  const analysis::CellEstimate cell = analysis::cell_of(result->coupling);
+  if (!options.json) return table_of(*found, *result, cell);
+  Json taps = Json::array();
+  for (const TapOfFile& one : found->taps) {
+    Json tap{{"file", one.file}, {"time", one.tap.at_s}};
+    tap.update(number_and_error(cell_of(one.tap.ring)));
+    taps.push_back(std::move(tap));
+  }
+  Json tester = number_and_error(cell);
+  tester.update(Json{{"chi_squared", result->chi_squared},
+                     {"freedom", result->freedom},
+                     {"probability", result->probability()}});
+  return io::json_document(
+      Json{{"tester", std::move(tester)}, {"taps", std::move(taps)}, {"left_out", found->refused}});
+}
+
 base::Result<std::string> run_characterise(const CharacteriseOptions& options) {
+  if (options.taps) return characterise_cell(options);
   if (!options.output.empty()) {
     if (auto free = record::check_publishable(options.output); !free) return tl::unexpected(free.error());
   }
@@ -152,15 +272,23 @@ void add_characterise(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<CharacteriseOptions>();
   CLI::App* command =
       app.add_subcommand("characterise", "find omega and gamma of the tester from its ring-downs");
-  command->add_option("files", options->files, "records of ring-downs")->required()->type_name("FILE.h5");
-  command->add_option("-o,--output", options->output, "where to keep it, a file that does not exist")
-      ->type_name("FILE.toml");
+  command->add_option("files", options->files, "records of ring-downs, or of taps")
+      ->required()
+      ->type_name("FILE.h5");
+  CLI::Option* const output =
+      command->add_option("-o,--output", options->output, "where to keep it, a file that does not exist")
+          ->type_name("FILE.toml");
+  command
+      ->add_flag("--tap", options->taps,
+                 "find natural frequency and damping of the load cell, from taps on it without the sled")
+      ->excludes(output);
   command->add_flag("--json", options->json, "JSON instead of a table");
   command->footer(
       "Examples:\n"
       "  stickslip characterise ring-down-1.h5 ring-down-2.h5 -o tester.toml\n"
       "  stickslip characterise ring-down-1.h5 ring-down-2.h5 --json\n"
-      "  stickslip analyze records/*.h5 --tester tester.toml");
+      "  stickslip analyze records/*.h5 --tester tester.toml\n"
+      "  stickslip characterise --tap taps.h5");
   choose(*command, chosen, [options] { return run_characterise(*options); });
 }
 

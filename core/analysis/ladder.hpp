@@ -15,8 +15,10 @@
 
 namespace stickslip::analysis {
 
-/// TesterCheck::probability below which the distance between the results with and without the tester's γ is
-/// added to the systematic uncertainties. Without a slope of K 1 in 20 tests lies below it by chance.
+/// TesterCheck::probability below which the distance between the results with and without the
+/// characterisation is added to the systematic uncertainties of S, K and S − K, as long as the
+/// characterisation is used (TesterCheck::used()) and its fit describes the test. Without a slope of K 1 in
+/// 20 tests lies below it by chance.
 inline constexpr double kSlopeLevel = 0.05;
 
 /// Standard error and systematic uncertainty, added in quadrature; one that is unknown counts as 0.

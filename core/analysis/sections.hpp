@@ -53,7 +53,8 @@ struct TestEstimates {
   Rung rung = Rung::kLawWithSlope;  ///< Set by the caller, with rung_reason.
   std::string rung_reason;          ///< Why not a higher rung.
   Misfit misfit;                    ///< Of all sections.
-  /// Estimate of the tester's parameters; nullopt if the fit of a section did not converge.
+  /// The tester's parameters by the fits of all sections, the prior included; nullopt if the fit of a section
+  /// did not converge.
   std::optional<TesterEstimate> tester;
 };
 

@@ -16,7 +16,8 @@ namespace stickslip::daq {
 /// dropped and its scans are counted: the producer never waits; the consumer sees the jump in the index.
 class ScanRing {
  public:
-  /// \param capacity blocks; choose it for at least 60 s (see capacity_for()).
+  /// \param capacity  blocks: of at least 60 s (capacity_for()) if the producer drops what finds no room; 1 s
+  ///        is enough for one that waits for has_room().
   explicit ScanRing(std::size_t capacity) : queue_(capacity), capacity_(capacity) {}
 
   /// Capacity in blocks that holds `bridge_s` seconds, for reads that deliver a short block every 5 ms

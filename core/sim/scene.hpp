@@ -89,7 +89,9 @@ struct Stribeck {
 struct Scene {
   std::string name;         ///< The file's name without its ending.
   std::string description;  ///< One line for people.
-  std::string text;         ///< Complete text of the file; after changes, a file that gives this scene.
+  /// Complete text of the file; with SceneChanges, of a file that gives this scene. Members set later do not
+  /// change it.
+  std::string text;
   std::uint64_t seed = 1;
   double scan_rate_Hz = 350.0;  ///< Nominal; unless the board is asked for another.
   double duration_s = 0.0;      ///< Of one repetition.
