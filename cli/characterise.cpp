@@ -177,8 +177,10 @@ base::Result<TapsOfFiles> read_taps(const std::vector<std::string>& files) {
   }
   if (!found.taps.empty()) return found;
   if (found.refused.empty())
-    return base::usage_error("{}: no tap is found: no reading stands out of the noise",
-                             base::printable(files.front()));
+    return base::usage_error(
+        "{}: no tap is found, no reading stands out of the noise: tap the cell, without the "
+        "sled, while it is recorded",
+        base::printable(files.front()));
   return base::usage_error("no tap tells the load cell: {}", found.refused.front());
 }
 

@@ -5,7 +5,9 @@ characterise_test.py BUILD_DIR SOURCE_DIR [unittest arguments]
 """
 
 import json
+import math
 import pathlib
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -18,6 +20,7 @@ CLI = BUILD / "bin" / "stickslip"
 
 # Generous: under sanitizers on a busy machine everything takes its time.
 TIMEOUT_S = 600
+SCENE = SOURCE / "config" / "scenes" / "ring-down-at-12-in-per-min.toml"
 
 
 def run(*arguments, cwd=None):
@@ -75,6 +78,50 @@ class Characterise(unittest.TestCase):
         error = known["details"]["delta_mu"]["standard_error"]
         self.assertLess(error, alone["details"]["delta_mu"]["standard_error"] / 2)
         self.assertLess(abs(known["delta_mu"] - 0.05), 5 * error)
+
+    def tapped(self, name, frequency, rate):
+        """A record of two taps on a cell of 5 % damping, by the closed form, with noise from a counter."""
+        ring = lambda t: math.exp(-0.05 * math.tau * frequency * t) * math.sin(math.sqrt(1 - 0.05**2) * math.tau * frequency * t)
+        rows = ["time_s,force_N"]
+        for scan in range(int(2.5 * rate)):
+            t = scan / rate
+            noise = 0.01 * math.sin(12.9898 * scan * scan)
+            rows.append(f"{t:.6f},{5 * sum(ring(t - begin) for begin in (0.7, 1.6) if t >= begin) + noise:.5f}")
+        trace = self.folder / f"{name}.csv"
+        trace.write_text("\n".join(rows))
+        record = self.folder / f"{name}.h5"
+        done = run(CLI, "import", trace, "--column", "force_N", "--sled-mass", "2331 g", "-o", record)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return record
+
+    def test_taps_tell_the_load_cell_in_the_words_of_the_configuration(self):
+        taps = self.tapped("taps", 120.0, 1000.0)
+        found = json.loads(run(CLI, "characterise", "--tap", taps, "--json").stdout)
+        self.assertEqual(len(found["taps"]), 2)
+        for key, truth in (("load_cell_frequency", 120.0), ("load_cell_damping", 0.05)):
+            self.assertLess(abs(found["tester"][key] - truth), 4 * found["tester"][key + "_standard_error"], key)
+        text = run(CLI, "characterise", "--tap", taps).stdout
+        self.assertRegex(text, r"a cell of (880|879\.99\d*|880\.0\d*) Hz looks the same")
+        # What it prints is accepted where it says.
+        configured = next(line for line in text.splitlines() if "load_cell_frequency" in line)
+        damping = next(line for line in text.splitlines() if "load_cell_damping = " in line)
+        config = self.folder / "tapped.toml"
+        config.write_text(f'[board]\ndriver = "simulated"\n[board.simulated]\nscenes = ["{SCENE}"]\n[tester]\n{configured}\n{damping}\n')
+        checked = run(BUILD / "bin" / "stickslipd", "--check-config", config)
+        self.assertEqual(checked.returncode, 0, checked.stderr)
+        options = shlex.split(next(line for line in text.splitlines() if line.startswith("or: "))[4:])
+        analysed = run(CLI, "analyze", *options, self.pull, "--json")
+        self.assertEqual(analysed.returncode, 0, analysed.stderr)
+
+    def test_a_record_without_taps_is_refused_with_a_reason(self):
+        still = self.folder / "still.csv"
+        still.write_text("\n".join(["time_s,force_N"] + [f"{i / 350:.6f},{0.2 + 0.01 * math.sin(i * i):.5f}" for i in range(1000)]))
+        record = self.folder / "still.h5"
+        imported = run(CLI, "import", still, "--column", "force_N", "--sled-mass", "2331 g", "-o", record)
+        self.assertEqual(imported.returncode, 0, imported.stderr)
+        done = run(CLI, "characterise", "--tap", record)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("no tap is found", done.stderr)
 
     def test_another_spring_is_a_finding(self):
         done = run(CLI, "analyze", self.changed, "--tester", self.tester)
