@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "core/model/threshold.hpp"
@@ -250,6 +251,32 @@ TEST(NumericSolver, ShowsTheForceWithoutAHole) {
   }
   EXPECT_NEAR(follower.duration_s, 349.5 / kRate_Hz, 1e-12);
   EXPECT_LE(follower.largest_jump, 2e-6);
+}
+
+// The cubics are as short as the accuracy asked for wants them, also where nobody knows that of the whole.
+TEST(NumericSolver, ShowsTheForceOfABeltThatNeverEndsAsCloselyAsAsked) {
+  class Follower final : public sim::ForceFollower {
+   public:
+    explicit Follower(const sim::Motion& motion) : exact_{motion, kRate_Hz} {}
+    void follow(const sim::ForceStretch& s) override {
+      const double middle_s = start_s_ + s.duration_s / 2.0;
+      const double scan = std::floor(middle_s * kRate_Hz);
+      const double c = exact_.at({static_cast<std::int64_t>(scan), middle_s * kRate_Hz - scan});
+      largest_error = std::max(largest_error, std::abs(s.course.value(s.duration_s / 2.0) - c));
+      start_s_ += s.duration_s;
+    }
+    double largest_error = 0.0;
+
+   private:
+    sim::Propagator exact_;
+    double start_s_ = 0.0;
+  };
+  sim::Motion motion = motion_at(2.5, kDamping);
+  motion.belt[0].duration_s = std::numeric_limits<double>::infinity();
+  Follower follower{motion};
+  sim::NumericSolver sled{motion, kRate_Hz, 1e-11};
+  sled.follow_to({350, 0.0}, follower);
+  EXPECT_LE(follower.largest_error, 2e-11);  // The cubic's and the solver's.
 }
 
 }  // namespace
