@@ -5,9 +5,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <string>
 
 #include "core/model/threshold.hpp"
+#include "core/sim/cvode.hpp"
 #include "core/sim/numeric_solver.hpp"
 #include "tests/numeric/constants.hpp"
 #include "tests/numeric/motion_recorder.hpp"
@@ -277,6 +279,25 @@ TEST(NumericSolver, ShowsTheForceOfABeltThatNeverEndsAsCloselyAsAsked) {
   sim::NumericSolver sled{motion, kRate_Hz, 1e-11};
   sled.follow_to({350, 0.0}, follower);
   EXPECT_LE(follower.largest_error, 2e-11);  // The cubic's and the solver's.
+}
+
+TEST(Cvode, SaysTheTolerancesThatItHasTriedWhereItGivesUp) {
+  class Hopeless final : public sim::OdeSystem {
+   public:
+    [[nodiscard]] sim::OdeState rate(double /*t_s*/, const sim::OdeState& /*y*/) const override {
+      return {std::numeric_limits<double>::quiet_NaN()};
+    }
+    [[nodiscard]] Jacobian jacobian(double /*t_s*/, const sim::OdeState& /*y*/) const override { return {}; }
+    [[nodiscard]] Events events(double /*t_s*/, const sim::OdeState& /*y*/) const override { return {}; }
+  };
+  const Hopeless system;
+  sim::Cvode cvode{sim::Cvode::Method::kAdams, system, 1, 1.0};
+  cvode.set_tolerance({1e-9});
+  for (int i = 0; i < 2; ++i) {
+    cvode.restart({});
+    EXPECT_THROW(static_cast<void>(cvode.step()), std::runtime_error);
+    EXPECT_EQ(cvode.widened(), 1e6);
+  }
 }
 
 }  // namespace
