@@ -177,6 +177,21 @@ TEST(SceneLaws, StrengtheningRateAndStateSlidesOnceAndForAll) {
 }
 
 // The transducers see the same force as the scans: a load cell far above the motion changes little.
+// A solver goes to the scan behind the end, a numeric one further.
+TEST(SceneLaws, TruthEndsWithTheScene) {
+  for (const std::string& law : {std::string{}, kAgeing}) {
+    Scene scene = scene_of(kShortPull + law);
+    const double onset_s = scene_truth(scene, 350.0, 11).cycles[1].onset_time_s;
+    for (const double early_s : {1e-6, 1e-3}) {
+      scene.duration_s = onset_s - early_s;
+      const model::TestTruth truth = scene_truth(scene, 350.0, 11);
+      EXPECT_EQ(truth.cycles.size(), 1U) << law << early_s;
+      ASSERT_FALSE(truth.modes.empty());
+      EXPECT_EQ(truth.modes[truth.modes.size() - 1].end_s, scene.duration_s) << law << early_s;
+    }
+  }
+}
+
 // The first peak comes atan(Q)/ω after the onset: in a pull as slow as this one 16 of 2000 points in a
 // period. A mean that ends 8 points after the pull, counted from the onset, has 24 too few.
 TEST(SceneLaws, TraditionalCoefficientsReadNothingAfterThePull) {
