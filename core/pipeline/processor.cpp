@@ -136,6 +136,7 @@ void Processor::lost_at_end(std::int64_t count) {
 void Processor::discard_waiting() noexcept {
   idle_scan_count_ += static_cast<std::int64_t>(waiting_.size());
   waiting_.clear();
+  idle_.clear();  // A self-check is about the scans right before a record.
 }
 
 void Processor::note_gap(daq::Gap gap) {
@@ -151,7 +152,6 @@ void Processor::note_gap(daq::Gap gap) {
   if (!test_is_running()) {
     // What was before a gap cannot be shown to belong to the coming test.
     discard_waiting();
-    idle_.clear();
     for (Sink* sink : sinks_) sink->gap_between_tests(gap);
     return;
   }
