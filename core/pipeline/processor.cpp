@@ -168,8 +168,8 @@ void Processor::watch_clocks(const daq::ScanBlock& block) {
   if (news.stall_s) tell_clocks(stall_at(block.first, *news.stall_s));
   if (news.step_s) {
     tell_clocks({daq::Note::Kind::kStep, block.first,
-                 fmt::format("the date went {:.1f} s {}: it was set, or the machine slept",
-                             std::abs(*news.step_s), *news.step_s > 0.0 ? "ahead" : "back")});
+                 fmt::format("the date went {:.1f} s {}: the clock was set", std::abs(*news.step_s),
+                             *news.step_s > 0.0 ? "ahead" : "back")});
   }
 }
 
