@@ -1,16 +1,20 @@
 #include "cli/sweep/run.hpp"
 
+#include <optional>
+
 #include "cli/simulation/simulate.hpp"
 #include "cli/sweep/scene_scans.hpp"
 
 #include "core/analysis/test_analysis.hpp"
 #include "core/sim/scene_truth.hpp"
+#include "drivers/simulated/simulated_truth.hpp"
 
 namespace stickslip::sweep {
 namespace {
 
-analysis::TestResults results_of(const sim::Scene& scene, std::uint64_t seed,
-                                 detect::EstimatorTier estimator) {
+/// \param arrived  receives the first scan that arrives, if any does.
+analysis::TestResults results_of(const sim::Scene& scene, std::uint64_t seed, detect::EstimatorTier estimator,
+                                 std::optional<base::ScanIndex>& arrived) {
   const daq::Calibration calibration = calibration_of(scene);
   analysis::AnalysisSettings settings;
   settings.scan_rate_Hz = scene.scan_rate_Hz;
@@ -21,6 +25,7 @@ analysis::TestResults results_of(const sim::Scene& scene, std::uint64_t seed,
   const bool any = play(
       scene, seed, calibration,
       [&](base::ScanIndex scan, double coefficient, bool saturated) {
+        if (!arrived) arrived = scan;
         analysis.add(scan, coefficient, saturated);
       },
       [&](base::ScanIndex first, std::int64_t count) { analysis.gap(first, count); });
@@ -47,8 +52,12 @@ record::SweepRun sweep_run(const sim::Scene& scene, std::uint64_t seed, std::int
                            detect::EstimatorTier estimator) {
   record::SweepRun run;
   run.number = number;
-  run.results = results_of(scene, seed, estimator);
+  std::optional<base::ScanIndex> arrived;
+  run.results = results_of(scene, seed, estimator, arrived);
   run.truth = sim::scene_truth(scene, scene.scan_rate_Hz, seed);
+  // As simulate: a record begins with the first scan that arrived.
+  drivers::move_into_window(run.truth, static_cast<double>(arrived.value_or(0)) / scene.scan_rate_Hz,
+                            scene.duration_s);
   run.true_cycle_count = static_cast<std::int64_t>(run.truth.cycles.size());
   run.truth.cycles.clear();
   run.truth.modes.clear();

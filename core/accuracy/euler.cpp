@@ -27,8 +27,8 @@ class Euler final : public Method {
     const double step_s = 1.0 / steps_per_s;
     PlainBelt belt{motion};
     double c = PeerSled::start_c(motion);
-    double rate = 0.0;
-    double belt_rate = 0.0;
+    double rate = PeerSled::start_rate(motion);
+    double belt_rate = rate;
     double side = 1.0;  // Of the belt's speed on which the sled slides: 1 slower, −1 faster.
     bool sticks = true;
     std::int64_t captures = 0;

@@ -166,7 +166,10 @@ class Odeint final : public Method {
  private:
   struct Sled {
     Sled(const Motion& motion, double tolerance)
-        : forces(motion), belt(motion), slide(forces, tolerance), x{PeerSled::start_c(motion), 0.0} {
+        : forces(motion),
+          belt(motion),
+          slide(forces, tolerance),
+          x{PeerSled::start_c(motion), PeerSled::start_rate(motion)} {
       belt_changed();
     }
 

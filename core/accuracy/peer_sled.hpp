@@ -37,6 +37,11 @@ struct PeerSled {
   [[nodiscard]] static double start_c(const sim::Motion& motion) {
     return -motion.startup_slack_m * motion.oscillator.omega0_squared() / motion.gravity_m_per_s2;
   }
+  /// c′ at scan 0, 1/s: that of the belt in the first segment if the coupling is slack, else 0.
+  [[nodiscard]] static double start_rate(const sim::Motion& motion) {
+    if (motion.startup_slack_m == 0.0 || motion.belt.empty()) return 0.0;
+    return motion.oscillator.stick_rate_per_s(motion.belt.front().speed_m_per_s, motion.gravity_m_per_s2);
+  }
 };
 
 }  // namespace stickslip::accuracy

@@ -33,7 +33,10 @@ Reference::Reference(const Motion& motion, double scan_rate_Hz)
   STICKSLIP_EXPECTS(scan_rate_Hz > 0.0);
   STICKSLIP_EXPECTS(lacks_reference(motion).empty());
   segment_end_s_ = Real(0);
-  begin(Phase::kStick, {-Real(motion.startup_slack_m) * omega0_squared_ / Real(motion.gravity_m_per_s2), 0});
+  const Real per_metre = omega0_squared_ / Real(motion.gravity_m_per_s2);
+  const bool rides = motion.startup_slack_m > 0.0 && !motion.belt.empty();
+  if (rides) belt_rate_ = per_metre * Real(motion.belt.front().speed_m_per_s);
+  begin(rides ? Phase::kRides : Phase::kStick, {-Real(motion.startup_slack_m) * per_metre, belt_rate_});
 }
 
 void Reference::next(std::span<double> coefficient) {

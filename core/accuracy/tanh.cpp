@@ -52,7 +52,7 @@ class Tanh final : public Method {
     const auto moved = [](const State& x, const State& dx, double h) -> State {
       return {x[0] + h * dx[0], x[1] + h * dx[1]};
     };
-    State x{PeerSled::start_c(motion), 0.0};
+    State x{PeerSled::start_c(motion), PeerSled::start_rate(motion)};
     bool slides = false;
     std::int64_t captures = 0;
     std::int64_t step = 0;

@@ -136,6 +136,7 @@ void Processor::lost_at_end(std::int64_t count) {
 void Processor::discard_waiting() noexcept {
   idle_scan_count_ += static_cast<std::int64_t>(waiting_.size());
   waiting_.clear();
+  idle_.clear();  // A self-check is about the scans right before a record.
 }
 
 void Processor::note_gap(daq::Gap gap) {
@@ -151,7 +152,6 @@ void Processor::note_gap(daq::Gap gap) {
   if (!test_is_running()) {
     // What was before a gap cannot be shown to belong to the coming test.
     discard_waiting();
-    idle_.clear();
     for (Sink* sink : sinks_) sink->gap_between_tests(gap);
     return;
   }
@@ -168,8 +168,8 @@ void Processor::watch_clocks(const daq::ScanBlock& block) {
   if (news.stall_s) tell_clocks(stall_at(block.first, *news.stall_s));
   if (news.step_s) {
     tell_clocks({daq::Note::Kind::kStep, block.first,
-                 fmt::format("the date went {:.1f} s {}: it was set, or the machine slept",
-                             std::abs(*news.step_s), *news.step_s > 0.0 ? "ahead" : "back")});
+                 fmt::format("the date went {:.1f} s {}: the clock was set", std::abs(*news.step_s),
+                             *news.step_s > 0.0 ? "ahead" : "back")});
   }
 }
 

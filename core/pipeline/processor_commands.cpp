@@ -136,7 +136,6 @@ CommandReport Processor::recalibrate(daq::Calibration calibration, const Calibra
   segmenter_ = Segmenter{settings_.segmenter};
   segmenter_.trigger_by_force(false);
   discard_waiting();
-  idle_.clear();
   const daq::LoadCell& cell = calibration_.load_cell();
   note_for_later(fmt::format("load cell calibrated: {:.8g} N/V, zero {:.6g} V, from scan {}, by {}",
                              cell.gain_N_per_V, cell.zero_V, next_scan_, who));

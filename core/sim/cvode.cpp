@@ -187,11 +187,11 @@ Cvode::Step Cvode::step() {
   double t_s = 0.0;
   int code = attempt(t_s);
   while (code < 0) {
-    widened_ *= kWidening;
-    if (widened_ > kWidest) {
+    if (widened_ * kWidening > kWidest) {
       throw std::runtime_error(
           fmt::format("CVODE cannot go on after {} s of a piece of the motion (code {})", reached_s_, code));
     }
+    widened_ *= kWidening;
     apply_tolerance();
     origin_s_ = reached_s_;
     store(reached_);

@@ -40,7 +40,9 @@ NumericSolver::NumericSolver(const Motion& motion, double scan_rate_Hz, double a
                              MotionObserver* observer, std::uint64_t seed)
     : motion_(make_motion(motion, scan_rate_Hz, accuracy, observer)),
       scan_rate_Hz_(scan_rate_Hz),
-      follow_step_s_(follow_step(motion, motion_->method().accuracy)) {
+      // A motion without end has no finite accuracy.
+      follow_step_s_(follow_step(
+          motion, std::isfinite(motion_->method().accuracy) ? motion_->method().accuracy : accuracy)) {
   restart(seed);
 }
 

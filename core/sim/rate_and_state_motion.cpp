@@ -40,6 +40,8 @@ RateAndStateMotion::RateAndStateMotion(const Motion& motion, double scan_rate_Hz
       omega0_rad_per_s_(std::sqrt(motion.oscillator.omega0_squared())),
       per_metre_(motion.oscillator.omega0_squared() / motion.gravity_m_per_s2),
       choice_(ToleranceChoice::of(motion, accuracy, kRateAndStateGrowth, kLeastRateAndStateTolerance)),
+      first_psi_(first_psi(*motion.rate_and_state,
+                           std::isfinite(choice_.accuracy) ? choice_.accuracy : accuracy, omega0_rad_per_s_)),
       walk_(motion_, scan_rate_Hz),
       system_(*motion.rate_and_state, motion.oscillator, motion.gravity_m_per_s2),
       cvode_(Cvode::Method::kBdf, system_, 3, 0.1 / omega0_rad_per_s_) {
@@ -66,9 +68,7 @@ void RateAndStateMotion::restart(std::uint64_t /*seed*/) {
   belt_ = walk_.from(start_);
   taut_ = motion_.startup_slack_m == 0.0;
   mode_.reset();
-  const OdeState y{-motion_.startup_slack_m * per_metre_, 0.0,
-                   first_psi(*motion_.rate_and_state, choice_.accuracy, omega0_rad_per_s_)};
-  begin(y);  // The first segment follows.
+  begin({-motion_.startup_slack_m * per_metre_, 0.0, first_psi_});  // The first segment follows.
 }
 
 OdeState RateAndStateMotion::state_at(double t_s) const { return t_s == 0.0 ? begun_ : cvode_.state_at(t_s); }

@@ -16,8 +16,9 @@
 /// the spring at the start of the mode, thus at the onset of a slip, but at least K.
 ///
 /// A run starts with a contact that has not rested. Ageing law: θ = 10⁻³ accuracy/ω₀, so short that the
-/// motion does not differ from that with θ = 0. Slip law: θ of a contact that does not slide never changes,
-/// so that θ = 0 would be no friction for ever; the run starts with θ = D_c/V₀, which gives μ₀.
+/// motion does not differ from that with θ = 0; with the accuracy asked for where ToleranceChoice's is
+/// infinite. Slip law: θ of a contact that does not slide never changes, so that θ = 0 would be no friction
+/// for ever; the run starts with θ = D_c/V₀, which gives μ₀.
 ///
 /// |V| is not smooth at V = 0, but there V is exponentially small in x: the step control copes, and a
 /// change of sign is no event.
@@ -69,6 +70,7 @@ class RateAndStateMotion final : public NumericMotion {
   double omega0_rad_per_s_;
   double per_metre_;  ///< ω₀²/g
   ToleranceChoice choice_;
+  double first_psi_;  ///< ln(V₀ θ/D_c) of the contact that a run starts with.
   double fastest_belt_m_per_s_ = 0.0;
   BeltWalk walk_;
   RateAndStateSystem system_;

@@ -21,7 +21,7 @@ namespace {
 using model::Mode;
 using model::Regime;
 
-/// Writes down what happens, in seconds.
+/// Writes down what happens before the end of the scene, in seconds.
 class Chronicle final : public MotionObserver {
  public:
   struct Slip {
@@ -37,14 +37,16 @@ class Chronicle final : public MotionObserver {
     double end_s = 0.0;
   };
 
-  Chronicle(double scan_rate_Hz, const std::filesystem::path& scratch_folder)
+  Chronicle(double scan_rate_Hz, double end_s, const std::filesystem::path& scratch_folder)
       : scan_rate_Hz_(scan_rate_Hz),
+        end_s_(end_s),
         modes_(scratch_folder),
         slips_(scratch_folder),
         slides_(scratch_folder) {}
 
   void mode_began(const ModeStart& start) override {
     const double now_s = start.time.periods_since({}) / scan_rate_Hz_;
+    if (now_s >= end_s_) return;  // A numeric solver goes beyond the last scan.
     const bool sticks = start.mode == Mode::kStick || (start.capture && start.onset);
     if (sticks && slip_ && !slip_->stick_again_s) slip_->stick_again_s = now_s;
     const bool rests = !mode_ || mode_->mode == Mode::kStick;
@@ -60,9 +62,9 @@ class Chronicle final : public MotionObserver {
   }
 
   /// Nothing comes any more.
-  void close(double now_s) {
-    end_mode(now_s);
-    end_slide(now_s);
+  void close() {
+    end_mode(end_s_);
+    end_slide(end_s_);
     if (slip_) slips_.push_back(*slip_);
     slip_.reset();
   }
@@ -84,6 +86,7 @@ class Chronicle final : public MotionObserver {
   }
 
   double scan_rate_Hz_;
+  double end_s_;
   std::optional<model::ModeInterval> mode_;  ///< The present one.
   std::optional<Slip> slip_;                 ///< The latest, which may still stick again.
   std::optional<double> slide_start_s_;
@@ -228,13 +231,13 @@ model::TestTruth scene_truth(const Scene& scene, double nominal_rate_Hz, std::ui
   truth.omega_rad_per_s = scene.oscillator.omega_rad_per_s();
   truth.gamma_over_2omega = scene.oscillator.gamma_over_2omega();
 
-  Chronicle chronicle{scan_rate_Hz, scratch_folder};
+  Chronicle chronicle{scan_rate_Hz, scene.duration_s, scratch_folder};
   const Motion scene_motion = motion_of(scene);
   const auto motion = make_motion_solver(scene_motion, scan_rate_Hz, scene.accuracy, &chronicle, seed);
   motion->skip(scan_count(scene, nominal_rate_Hz));
   const SolverMethod solver = motion->method();
   truth.solver = model::SolverFacts{std::string{solver.name}, solver.accuracy, scene.accuracy, {}};
-  chronicle.close(scene.duration_s);
+  chronicle.close();
   truth.modes = chronicle.take_modes();
   truth.cycles = base::LongColumn<model::TrueCycle>{scratch_folder};
   for (const Chronicle::Slip& slip : chronicle.slips()) {

@@ -1,9 +1,11 @@
 #include "core/sim/traditional_truth.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <span>
 
 #include "core/sim/motion_solver.hpp"
 
@@ -76,8 +78,10 @@ TraditionalTruth traditional_truth(const Scene& scene, std::uint64_t seed, doubl
   Reader reader{method, rate_Hz / pull_speed_m_per_s};
   std::array<double, 256> force{};
   for (std::int64_t at = from; at < end && !reader.done(); at += static_cast<std::int64_t>(force.size())) {
-    motion->next(force);
-    for (const double now : force) reader.add(now);
+    const auto left = static_cast<std::size_t>(end - at);
+    const std::span<double> points = std::span{force}.first(std::min(left, force.size()));
+    motion->next(points);
+    for (const double now : points) reader.add(now);
   }
   return reader.truth();
 }

@@ -107,6 +107,7 @@ class PolledBoard final : public daq::Board {
   }
 
   void stop() noexcept override {
+    pending_.reset();
     if (state_ == State::kAcquiring) state_ = State::kIdle;
   }
 

@@ -1,11 +1,15 @@
 #include "drivers/simulated/simulated_board.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "core/sim/belt.hpp"
@@ -44,10 +48,18 @@ class SimulatedBoard final : public daq::Board {
 
   [[nodiscard]] base::Result<void> start() override {
     if (running_) return {};
-    running_ = true;
     start_ns_ = clock_.monotonic_ns();
-    if (const auto from = std::exchange(continues_, std::nullopt))
-      seek(daq::first_scan_after(*from, start_ns_));
+    try {
+      if (const auto from = std::exchange(continues_, std::nullopt)) {
+        seek(daq::first_scan_after(*from, start_ns_));
+      } else if (!error_.empty()) {
+        play(playing_.number + 1);  // Its motion cannot be solved any further.
+      }
+    } catch (const std::runtime_error& error) {
+      return base::failure("{}", error_ = unsolved(error));
+    }
+    error_.clear();
+    running_ = true;
     start_scan_ = next_;
     return {};
   }
@@ -62,7 +74,13 @@ class SimulatedBoard final : public daq::Board {
       return ReadStatus::kTimeout;
     }
     clock_.sleep_until(due_ns(last_of_delivery(deadline_ns)));
-    fill(block, clock_.monotonic_ns());
+    try {
+      fill(block, clock_.monotonic_ns());
+    } catch (const std::runtime_error& error) {
+      running_ = false;
+      error_ = unsolved(error);
+      return ReadStatus::kFailed;
+    }
     if (hanging_) {
       hanging_->look();
       hanging_->read(block.first, std::span{block.raw}.first(block.count));
@@ -74,6 +92,8 @@ class SimulatedBoard final : public daq::Board {
   }
 
   void stop() noexcept override { running_ = false; }
+
+  [[nodiscard]] std::string last_error() const override { return error_; }
 
  private:
   /// As a board that interrupts when its FIFO holds so much; scan by scan the computer would do little but
@@ -96,8 +116,13 @@ class SimulatedBoard final : public daq::Board {
            static_cast<std::int64_t>(std::ceil(periods * kNanosecondsPerSecond / true_scan_rate_Hz_));
   }
 
+  [[nodiscard]] std::string unsolved(const std::runtime_error& error) const {
+    return fmt::format("scene {}: {}; try a gentler friction law", playlist_->scenes()[playing_.scene].name,
+                       error.what());
+  }
+
   /// Goes on with this repetition, or the first after it of which any scan arrives.
-  void play(std::int64_t repetition) noexcept {
+  void play(std::int64_t repetition) {
     for (;; ++repetition) {
       playing_.number = repetition;
       if (!playlist_->has(repetition)) return;
@@ -109,7 +134,7 @@ class SimulatedBoard final : public daq::Board {
   }
 
   /// The next scan is this one, or the first after it that arrives.
-  void seek(base::ScanIndex scan) noexcept {
+  void seek(base::ScanIndex scan) {
     play(playlist_->repetition_of(scan));
     std::array<double, daq::ScanBlock::kMaxScans> passed{};
     while (next_ < scan && playlist_->has(playing_.number)) {
@@ -126,7 +151,7 @@ class SimulatedBoard final : public daq::Board {
 
   /// All scans that are due, at least the next one, as many as fit, follow each other without a jump
   /// and belong to the list.
-  void fill(daq::ScanBlock& block, std::int64_t now_ns) noexcept {
+  void fill(daq::ScanBlock& block, std::int64_t now_ns) {
     block.first = next_;
     std::size_t wanted = 1;
     while (wanted < daq::ScanBlock::kMaxScans &&
@@ -171,6 +196,7 @@ class SimulatedBoard final : public daq::Board {
   Repetition playing_;
   base::ScanIndex next_ = 0;
   bool running_ = false;
+  std::string error_;  ///< Since the last start that succeeded.
   base::ScanIndex start_scan_ = 0;
   std::int64_t start_ns_ = 0;
 };
@@ -235,7 +261,12 @@ base::Result<SimulatedTester> make_simulated_tester(const SimulatedBoardSettings
   result.tester = tester_of(scenes);
   auto playlist = std::make_shared<const Playlist>(std::move(scenes), settings.repeats, rate_Hz);
   result.truth = make_simulated_truth(playlist, settings.method);
-  result.board = std::make_unique<SimulatedBoard>(std::move(playlist), clock, settings);
+  try {
+    result.board = std::make_unique<SimulatedBoard>(std::move(playlist), clock, settings);
+  } catch (const std::runtime_error& error) {
+    return base::failure("simulated board, scans before {}: {}; try a gentler friction law",
+                         settings.first_scan, error.what());
+  }
   if (settings.faults.overruns_every_s > 0.0 || settings.faults.losses_every_s > 0.0)
     result.board = with_faults(std::move(result.board), settings.faults);
   return result;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <utility>
 
 #include "core/base/long_column.hpp"
@@ -111,10 +112,15 @@ class SimulatedTruth final : public model::TruthSource {
     }
     if (!best) return std::nullopt;
     const double rate_Hz = playlist_->scan_rate_Hz();
-    model::TestTruth truth = sim::scene_truth(playlist_->scenes()[best->scene], rate_Hz, best->seed, method_);
-    move_into_window(truth, static_cast<double>(first - best->first) / rate_Hz,
-                     static_cast<double>(end - first) / rate_Hz);
-    return truth;
+    try {
+      model::TestTruth truth =
+          sim::scene_truth(playlist_->scenes()[best->scene], rate_Hz, best->seed, method_);
+      move_into_window(truth, static_cast<double>(first - best->first) / rate_Hz,
+                       static_cast<double>(end - first) / rate_Hz);
+      return truth;
+    } catch (const std::runtime_error&) {  // The board tells that the motion cannot be solved.
+      return std::nullopt;
+    }
   }
 
   [[nodiscard]] std::unique_ptr<model::TrueForce> force(base::ScanIndex /*first*/) const override {

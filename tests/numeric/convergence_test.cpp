@@ -117,6 +117,24 @@ TEST(Convergence, PeersTakePartInWholeTests) {
   }
 }
 
+// All of them let a sled with slack begin at the speed of a belt that moves at scan 0, also where the segment
+// that says so has no length. At rest it would lose r²/(2 ω₀² K) = 0.007 of the force.
+TEST(Convergence, SledWithSlackBeginsAtTheSpeedOfTheBelt) {
+  sim::Motion motion = motion_at(1.3, 0.022);
+  motion.one_way_coupling = true;
+  motion.startup_slack_m = 0.1 * motion.belt[0].speed_m_per_s;  // Taut after 35 scans, sticks for 15 more.
+  std::vector<double> truth(350);
+  accuracy::Reference{motion, kRate_Hz}.next(truth);
+  EXPECT_LT(accuracy::largest_difference(trace(motion, kRate_Hz, truth.size()), truth), 1e-10);
+  EXPECT_LT(error_of(*accuracy::make_dormand_prince(1e-9), motion, truth.size()), 1e-6);
+  // A step of the belt; a width of its speed for 15 scans.
+  EXPECT_LT(error_of(*accuracy::make_euler(1024), motion, 45), 1e-4);
+  EXPECT_LT(error_of(*accuracy::make_tanh(0.001), motion, 45), 1e-3);
+  motion.belt = {{0.0, motion.belt[0].speed_m_per_s}, {1.0, 0.0}, {1.0, motion.belt[0].speed_m_per_s}};
+  accuracy::Reference{motion, kRate_Hz}.next(truth);
+  EXPECT_LT(accuracy::largest_difference(trace(motion, kRate_Hz, truth.size()), truth), 1e-10);
+}
+
 // A belt that comes back without halting, and a sled that it carries away; a tight coupling that is pushed.
 TEST(Convergence, OdeintSlidesEitherWay) {
   for (const bool one_way : {true, false}) {

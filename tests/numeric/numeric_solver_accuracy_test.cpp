@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <stdexcept>
 #include <string>
 
 #include "core/model/threshold.hpp"
+#include "core/sim/cvode.hpp"
 #include "core/sim/numeric_solver.hpp"
 #include "tests/numeric/constants.hpp"
 #include "tests/numeric/motion_recorder.hpp"
@@ -250,6 +253,51 @@ TEST(NumericSolver, ShowsTheForceWithoutAHole) {
   }
   EXPECT_NEAR(follower.duration_s, 349.5 / kRate_Hz, 1e-12);
   EXPECT_LE(follower.largest_jump, 2e-6);
+}
+
+// The cubics are as short as the accuracy asked for wants them, also where nobody knows that of the whole.
+TEST(NumericSolver, ShowsTheForceOfABeltThatNeverEndsAsCloselyAsAsked) {
+  class Follower final : public sim::ForceFollower {
+   public:
+    explicit Follower(const sim::Motion& motion) : exact_{motion, kRate_Hz} {}
+    void follow(const sim::ForceStretch& s) override {
+      const double middle_s = start_s_ + s.duration_s / 2.0;
+      const double scan = std::floor(middle_s * kRate_Hz);
+      const double c = exact_.at({static_cast<std::int64_t>(scan), middle_s * kRate_Hz - scan});
+      largest_error = std::max(largest_error, std::abs(s.course.value(s.duration_s / 2.0) - c));
+      start_s_ += s.duration_s;
+    }
+    double largest_error = 0.0;
+
+   private:
+    sim::Propagator exact_;
+    double start_s_ = 0.0;
+  };
+  sim::Motion motion = motion_at(2.5, kDamping);
+  motion.belt[0].duration_s = std::numeric_limits<double>::infinity();
+  Follower follower{motion};
+  sim::NumericSolver sled{motion, kRate_Hz, 1e-11};
+  sled.follow_to({350, 0.0}, follower);
+  EXPECT_LE(follower.largest_error, 2e-11);  // The cubic's and the solver's.
+}
+
+TEST(Cvode, SaysTheTolerancesThatItHasTriedWhereItGivesUp) {
+  class Hopeless final : public sim::OdeSystem {
+   public:
+    [[nodiscard]] sim::OdeState rate(double /*t_s*/, const sim::OdeState& /*y*/) const override {
+      return {std::numeric_limits<double>::quiet_NaN()};
+    }
+    [[nodiscard]] Jacobian jacobian(double /*t_s*/, const sim::OdeState& /*y*/) const override { return {}; }
+    [[nodiscard]] Events events(double /*t_s*/, const sim::OdeState& /*y*/) const override { return {}; }
+  };
+  const Hopeless system;
+  sim::Cvode cvode{sim::Cvode::Method::kAdams, system, 1, 1.0};
+  cvode.set_tolerance({1e-9});
+  for (int i = 0; i < 2; ++i) {
+    cvode.restart({});
+    EXPECT_THROW(static_cast<void>(cvode.step()), std::runtime_error);
+    EXPECT_EQ(cvode.widened(), 1e6);
+  }
 }
 
 }  // namespace

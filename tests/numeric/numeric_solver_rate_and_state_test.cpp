@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <vector>
@@ -183,6 +184,20 @@ TEST(RateAndStateFriction, AnUnloadedSledOnABeltAtRestGetsToItsPull) {
       std::vector<double> raw(static_cast<std::size_t>(rate_Hz));
       EXPECT_EQ(run.next(raw), raw.size());
     }
+  }
+}
+
+// The accuracy that is asked for bounds the first rest, also where nobody knows that of the whole.
+TEST(RateAndStateFriction, ABeltThatNeverEndsMovesTheSledAsOneThatEndsLater) {
+  for (const Law law : {Law::kAgeing, Law::kSlip}) {
+    const RateAndState settings{law, 0.01, 0.02, 1e-6, 1e-6, 0.35};
+    const auto scans = [&settings](double duration_s) {
+      return scans_of(rate_and_state_motion(settings, {{duration_s, 0.002}}), 1e-6, 0.5);
+    };
+    const std::vector<double> endless = scans(std::numeric_limits<double>::infinity());
+    const std::vector<double> ends = scans(0.5);
+    // Each has its error.
+    for (std::size_t i = 0; i < ends.size(); ++i) ASSERT_NEAR(endless[i], ends[i], 2e-6) << i;
   }
 }
 

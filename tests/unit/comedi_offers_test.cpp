@@ -131,6 +131,19 @@ TEST_F(ComediOffers, PolledBoardThatGoesAwayIsMissing) {
   EXPECT_FALSE(board->start());
 }
 
+TEST_F(ComediOffers, PolledBoardForgetsAtAStopWhyItEndedABundle) {
+  const auto board = make();
+  ASSERT_TRUE(board->start());
+  world_.signal = [this](std::int64_t) {
+    world_.used_by_another = true;  // From the second scan of the bundle on.
+    return 1U;
+  };
+  ASSERT_EQ(board->read(block_, 100ms), ReadStatus::kScans);
+  ASSERT_EQ(block_.count, 1U);
+  board->stop();
+  EXPECT_EQ(board->read(block_, 100ms), ReadStatus::kTimeout);
+}
+
 TEST_F(ComediOffers, PolledBoardInUseIsRefusedAtTheStart) {
   const auto board = make();
   world_.used_by_another = true;

@@ -191,6 +191,25 @@ TEST_F(ProcessorTest, ScansGivenUpByCommandsAreIdle) {
   EXPECT_EQ(static_cast<daq::ScanIndex>(diary_.values.size()) + processor.idle_scan_count(), kEnd);
 }
 
+// A self-check is about the scans right before the record: not about those before a load that was given up.
+TEST_F(ProcessorTest, WhatACommandGivesUpHasNoSelfCheck) {
+  settings_.automatic = false;
+  board_.quantity = daq::RawQuantity::kVolts;
+  for (const bool tares : {false, true}) {
+    diary_ = {};
+    Processor processor = make();
+    feed(processor, 0, kLoaded + 20);
+    if (tares) {
+      EXPECT_EQ(processor.tare("ada").refusal, "");
+    }
+    static_cast<void>(processor.arm("ada"));
+    feed(processor, kLoaded + 20, kEnd);
+    ASSERT_EQ(diary_.starts.size(), 1U);
+    EXPECT_EQ(diary_.starts[0].first, kLoaded + 20);
+    EXPECT_EQ(diary_.starts[0].self_check, nullptr) << tares;
+  }
+}
+
 // A bench that scans for 142 days at 350 Hz passes 2^32; nothing may be cut to 32 bits on the way, nor lose
 // digits.
 TEST_F(ProcessorTest, TheSameScansBeyond32BitsOfTheIndexGiveTheSameResults) {

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <numeric>
 #include <string>
 #include <vector>
 
 #include "core/sim/scene_run.hpp"
 #include "core/sim/scene_truth.hpp"
+#include "core/sim/traditional_truth.hpp"
 #include "tests/unit/scene_text.hpp"
 
 namespace stickslip::sim {
@@ -175,6 +177,41 @@ TEST(SceneLaws, StrengtheningRateAndStateSlidesOnceAndForAll) {
 }
 
 // The transducers see the same force as the scans: a load cell far above the motion changes little.
+// A solver goes to the scan behind the end, a numeric one further.
+TEST(SceneLaws, TruthEndsWithTheScene) {
+  for (const std::string& law : {std::string{}, kAgeing}) {
+    Scene scene = scene_of(kShortPull + law);
+    const double onset_s = scene_truth(scene, 350.0, 11).cycles[1].onset_time_s;
+    for (const double early_s : {1e-6, 1e-3}) {
+      scene.duration_s = onset_s - early_s;
+      const model::TestTruth truth = scene_truth(scene, 350.0, 11);
+      EXPECT_EQ(truth.cycles.size(), 1U) << law << early_s;
+      ASSERT_FALSE(truth.modes.empty());
+      EXPECT_EQ(truth.modes[truth.modes.size() - 1].end_s, scene.duration_s) << law << early_s;
+    }
+  }
+}
+
+// The first peak comes atan(Q)/ω after the onset: in a pull as slow as this one 16 of 2000 points in a
+// period. A mean that ends 8 points after the pull, counted from the onset, has 24 too few.
+TEST(SceneLaws, TraditionalCoefficientsReadNothingAfterThePull) {
+  Scene scene = scene_of(kShortPull);
+  scene.constant_speed->pull_speed_m_per_s = 2e-4;
+  const double points_per_s = 2000.0 * scene.oscillator.omega_rad_per_s() / (2.0 * std::numbers::pi);
+  const double onset_s = scene_truth(scene, 350.0, 11).cycles[0].onset_time_s;
+  model::Method method;
+  for (int i = 0; i < 4; ++i) {  // The end lies anywhere in a block of points.
+    const double length_s = pull_of(scene)->end_s - onset_s;
+    const auto to = [&](double points) {
+      method.kinetic_travel = model::TravelWindow{0.0, 2e-4 * (length_s + points / points_per_s)};
+      return traditional_truth(scene, 11, onset_s, method, 2e-4).kinetic_coefficient;
+    };
+    EXPECT_TRUE(to(-50.0));
+    EXPECT_FALSE(to(8.0));
+    scene.constant_speed->pull_s += 0.0013;
+  }
+}
+
 TEST(SceneLaws, TransducersFollowANumericMotion) {
   const std::string law = "[effects.stribeck]\nrise = 0.03\nspeed = \"1 mm/s\"\n";
   const std::vector<double> bare = readings_of(kShortPull + law);

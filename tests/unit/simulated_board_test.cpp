@@ -62,6 +62,39 @@ SimulatedBoardSettings faulty(const SimulatedFaults& faults) {
   return {.scenes = {kRingDown}, .repeats = 0, .scan_rate_Hz = {}, .faults = faults};
 }
 
+// Friction that falls so steeply drives the sled beyond all numbers.
+TEST(SimulatedBoard, MotionThatCannotBeSolvedIsAnErrorOfTheBoard) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "runaway.toml";
+  std::ofstream{file} << std::ifstream{kRingDown}.rdbuf()
+                      << "\n[effects.velocity_dependence]\nper_speed = \"-100 s/m\"\n";
+  SleepingClock clock;
+  auto tester = make_simulated_tester({{file}, 2, {}}, clock);
+  ASSERT_TRUE(tester);
+  daq::Board& board = *tester->board;
+  daq::ScanBlock block;
+  for (const base::ScanIndex begin : {base::ScanIndex{0}, kRepetitionScans}) {
+    ASSERT_TRUE(board.start());
+    EXPECT_EQ(board.last_error(), "");
+    ASSERT_EQ(board.read(block, 1000ms), ReadStatus::kScans);
+    EXPECT_EQ(block.first, begin) << "the repetition is over";
+    ReadStatus status = ReadStatus::kScans;
+    while ((status = board.read(block, 1000ms)) == ReadStatus::kScans) {
+    }
+    EXPECT_EQ(status, ReadStatus::kFailed);
+    EXPECT_EQ(block.count, 0U);
+    EXPECT_THAT(board.last_error(), HasSubstr("CVODE"));
+    board.stop();
+  }
+  ASSERT_TRUE(board.start());
+  EXPECT_EQ(board.read(block, 1000ms), ReadStatus::kEndOfInput);
+  EXPECT_FALSE(tester->truth->truth(0, kRepetitionScans));
+  auto late = make_simulated_tester(
+      {.scenes = {file}, .repeats = 2, .scan_rate_Hz = {}, .first_scan = kRepetitionScans - 1}, clock);
+  ASSERT_FALSE(late);
+  EXPECT_THAT(late.error().message, HasSubstr("CVODE"));
+}
+
 // What is lost is drawn from the seed, and what is delivered is what the board without faults delivers there.
 TEST(SimulatedBoard, AnOverrunLosesScansAndHaltsUntilStartedAgain) {
   SleepingClock clock;

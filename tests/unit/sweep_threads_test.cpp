@@ -13,6 +13,7 @@
 #include "core/base/clock.hpp"
 #include "core/record/json_codec.hpp"
 #include "core/record/sweep_file.hpp"
+#include "core/sim/scene_truth.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/sweep_samples.hpp"
 
@@ -70,6 +71,23 @@ TEST(SweepRunner, ARunIsWhatSimulateGives) {
     EXPECT_EQ(run.truth.oscillation_frequency_Hz, truth.oscillation_frequency_Hz);
     EXPECT_GT(run.true_cycle_count, 0);
   }
+}
+
+// Both count the slips from the first scan that arrived to the end of the scene.
+TEST(SweepRunner, CountsTheTrueSlipsThatSimulateGives) {
+  sim::Scene scene = test::small_plan().points[1];
+  scene.duration_s = 2.0;
+  scene.missing_scans->rate_per_s = 20.0;
+  scene.missing_scans->mean_length_scans = 500.0;
+  int late = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    const auto simulation = simulation::simulate(scene, seed, test::ManualClock{});
+    if (!simulation) continue;  // All scans are missing.
+    const std::size_t count = simulation->record.end->truth->cycles.size();
+    EXPECT_EQ(sweep_run(scene, seed, 0).true_cycle_count, static_cast<std::int64_t>(count)) << seed;
+    late += sim::scene_truth(scene, scene.scan_rate_Hz, seed).cycles.size() > count ? 1 : 0;
+  }
+  EXPECT_GT(late, 0);
 }
 
 TEST(SweepRunner, StoppedAndResumedOnOtherThreadsGivesTheSameFile) {
