@@ -65,8 +65,9 @@ struct TestResults {
   /// one before, or its peak if the onset is not known.
   Estimate transition_time;
   Estimate cycle_count;  ///< Falls that are slips.
-  /// Slips that ended in sticking; the last slip does not tell. 0 in a regime that never sticks. Absent if
-  /// undecided, if fewer than half of the slips tell, or if only the shape of the cycles tells stick-slip.
+  /// Slips that ended in sticking. 0 in a regime that never sticks. Absent if undecided, if only the shape of
+  /// the cycles tells stick-slip, or if slips stuck but fewer than half of all tell how they ended. The last
+  /// never tells, but is taken for one that does in this rule.
   Estimate stick_cycle_count;
   Estimate period_median;          ///< s, from peak to peak.
   Estimate oscillation_frequency;  ///< Hz, cycles over time; ω/2π of a ring-down with a fit.
