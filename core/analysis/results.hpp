@@ -73,10 +73,10 @@ struct TestResults {
   Estimate oscillation_frequency;  ///< Hz, cycles over time; ω/2π of a ring-down with a fit.
   Estimate static_coefficient;     ///< Traditional, by the method; absent if the trace begins under load.
   Estimate kinetic_coefficient;    ///< Traditional, by the method.
-  Estimate mu_s;                   ///< S of the model: mean over the slips, from `rung`.
-  Estimate mu_k;                   ///< K of the model: mean over the slips, from `rung`.
-  Estimate delta_mu;               ///< S − K.
-  Estimate amplitude;              ///< Half the mean range of the oscillation, coefficient.
+  Estimate mu_s;       ///< S of the model, by `rung`: mean over the slips, as a rule without the first.
+  Estimate mu_k;       ///< K of the model, by `rung`: mean over the slips, as a rule without the first.
+  Estimate delta_mu;   ///< S − K.
+  Estimate amplitude;  ///< Half the mean range of the oscillation, coefficient.
   Estimate gamma_over_2omega;
   Estimate omega;  ///< rad/s, damped.
   Estimate Q;      ///< Dimensionless speed.

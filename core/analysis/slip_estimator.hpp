@@ -49,7 +49,8 @@ struct SlipEstimates {
 
   /// The tester's parameters, from `uniform` if present, else from `fit`. Requires fit.converged.
   [[nodiscard]] TesterEstimate tester() const;
-  /// S of a slip: c at its onset plus a/g, the friction that gives the sled the belt's acceleration a.
+  /// S of a slip, without the drift: c at its onset plus a/g, the friction that gives the sled the belt's
+  /// acceleration a.
   [[nodiscard]] double static_coefficient(const estimate::SlipWindow& window) const;
 };
 
