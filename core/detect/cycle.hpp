@@ -27,8 +27,8 @@ enum CycleFlag : std::uint8_t {
 /// (scan index − first index of the record) / granted rate. Members that are unknown are set to NaN.
 struct Cycle {
   std::int64_t number = 0;  ///< From 0.
-  base::ScanIndex first_scan =
-      0;  ///< Scan nearest to the peak: index of the acquisition, but see LiveDetector::add().
+  /// Scan nearest to the peak, index of the acquisition; LiveDetector::add() counts otherwise.
+  base::ScanIndex first_scan = 0;
   double onset_time_s = 0.0;    ///< Slip onset.
   double capture_time_s = 0.0;  ///< Slip ends in sticking; NaN if not, or if unknown.
   double peak_time_s = 0.0;     ///< Maximum of the force, interpolated between scans.
