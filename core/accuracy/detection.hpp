@@ -59,10 +59,10 @@ struct DetectionRow {
   std::string setting;
   std::string reason;                  ///< Why there is no estimate; empty if there is.
   std::optional<double> error;         ///< Estimate less truth, of S − K; nullopt unless both exist.
-  std::optional<double> us_per_cycle;  ///< Time of the test over its true cycles; nullopt if it has none.
+  std::optional<double> us_per_cycle;  ///< Computing time over the true cycles; nullopt without any.
 };
 
-/// Runs and times (least_time_ns()) each estimator.
+/// Runs and times (least_time_ns()) each estimator: a row for each, in their order.
 [[nodiscard]] std::vector<DetectionRow> compare_estimators(
     const ObservedTest& test, std::span<const std::unique_ptr<Estimator>> estimators,
     const base::Clock& clock);

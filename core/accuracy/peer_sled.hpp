@@ -9,7 +9,8 @@
 
 namespace stickslip::accuracy {
 
-/// Forces on the sled in units of the coefficient c: c″ = pull(c, c′) + ω₀² μ, where μ is ±K while it slides.
+/// Forces on the sled in units of the coefficient c: c″ = pull(c, c′) + ω₀² μ. The method that uses this adds
+/// the friction μ: ±K while the sled slides, or that of make_tanh().
 struct PeerSled {
   explicit PeerSled(const sim::Motion& motion)
       : omega0_squared(motion.oscillator.omega0_squared()),

@@ -15,7 +15,7 @@ class PlainBelt {
   /// \param motion  outlives this; lacks_reference() is empty.
   explicit PlainBelt(const sim::Motion& motion) : motion_(&motion) { pass(0.0); }
 
-  /// r = ω₀² v/g, 1/s; 0 after the last segment.
+  /// r = ω₀² v/g, 1/s; 0 from halt() to the end of its segment, and after the last segment.
   [[nodiscard]] double rate() const noexcept { return rate_; }
   /// When the present segment ends, s; infinity after the last.
   [[nodiscard]] double end_s() const noexcept { return end_s_; }

@@ -19,8 +19,8 @@
 
 namespace stickslip::accuracy {
 
-/// Feature of the motion that excludes a reference in 50 digits; empty if there is none. Supported: constant
-/// belt speeds, any damping, both couplings, both onset conventions, uniform paper.
+/// Feature of the motion that excludes a reference in 50 digits; empty if there is none. Supported: belt
+/// segments of constant speed, any damping, both couplings, both onset conventions, uniform paper.
 [[nodiscard]] std::string_view lacks_reference(const sim::Motion& motion) noexcept;
 
 /// Computes the scans of a plain motion one after the other, in 50 digits and constant memory. Thread-bound.
@@ -38,7 +38,8 @@ class Reference {
 
   /// Slips so far that ended because the sled reached the belt's speed.
   [[nodiscard]] std::int64_t capture_count() const noexcept { return capture_count_; }
-  /// Start of the present piece of motion, s after scan 0: a stick, slip or flight on a belt of one speed.
+  /// Start of the present piece of motion, s after scan 0: a stick, a slip, a flight, or a ride with the belt
+  /// in a slack coupling, on a belt of one speed.
   [[nodiscard]] const Real& piece_start_s() const noexcept { return start_s_; }
   /// The latest onset of a slip from sticking, s after scan 0; nullopt if there was none.
   [[nodiscard]] const std::optional<Real>& last_onset_s() const noexcept { return last_onset_s_; }

@@ -54,9 +54,10 @@ struct Peer {
   std::function<base::Result<std::vector<PeerOutcome>>(std::span<const TierScene>)> run;
 };
 
-/// The tiers of detect::LiveDetector, the raw maximum less the mean, and a peer, at 50 … 10 000 scans/s.
+/// The raw maximum less the mean, a peer, and the tiers of detect::LiveDetector, at 50 … 10 000 scans/s.
 /// A rate that estimate::check_sampling() refuses has one row, "all", with the reason; these rows come first.
-/// The others follow rate by rate. The numbers are the same in each run, but for the times.
+/// The others follow rate by rate, the estimators in the order above. The numbers are the same in each run,
+/// but for the times.
 [[nodiscard]] std::vector<TierRow> compare_tiers(const base::Clock& clock, const Peer& peer);
 
 }  // namespace stickslip::accuracy

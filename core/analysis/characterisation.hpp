@@ -62,7 +62,7 @@ inline constexpr double kSpeedTolerance = 0.05;
 struct TesterCheck {
   double chi_squared = 0.0;  ///< Of the test alone against the characterisation; 2 degrees of freedom.
   double probability = 1.0;  ///< Of a χ² at least this large by chance; 0 if χ² is not finite.
-  Estimate pull_speed;       ///< m/s, from the stick rate and ω₀.
+  Estimate pull_speed;       ///< m/s, by pull_speed_of(): lacks the part of a subtracted drift.
   std::vector<base::Finding> findings;  ///< kTesterChanged and kPullSpeed, if they apply.
 
   [[nodiscard]] bool agrees() const noexcept { return probability >= kDisagreement; }

@@ -40,8 +40,10 @@ struct MeasuredTest {
   std::string grade{};                   ///< Of the paper; empty if not stated.
   std::optional<double> stick_time_s{};  ///< mean_stick_time_s() of the same slips.
   BudgetFacts budget_facts{};
-  std::vector<RestGroup> rests{};  ///< group_by_rest() of its cycles; empty if they have no pull speeds.
-  bool speed_changes = false;      ///< It has no Q, and its slips are at several pull speeds.
+  /// group_by_rest() of its cycles; empty if they have no pull speeds, or if the caller needs none.
+  std::vector<RestGroup> rests{};
+  /// It has no Q, and its slips are at several pull speeds. False also if the caller does not need it.
+  bool speed_changes = false;
 };
 
 /// Reason why a test has no value of a quantity.

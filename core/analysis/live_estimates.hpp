@@ -43,7 +43,7 @@ struct LiveSettlement {
   /// those after a hold only if all others are such.
   bool first_counts = false;
   std::string reason;  ///< Reason given for all results that turning points do not determine.
-  Slack slack{};       ///< Slips with such a trough are not in the means of S, K and S − K.
+  Slack slack{};  ///< Slips with such a trough, the last excepted, are not in the means of S, K and S − K.
 };
 
 /// Estimates of a test without a fit, in place of estimate_in_sections(). Values are given to S, K and S − K

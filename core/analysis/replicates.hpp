@@ -38,7 +38,7 @@ struct Replicates {
   std::optional<double> repeatability;       ///< r = 2.8 s_r.
   std::optional<Interval> mean_interval;     ///< Of the mean; 95 %, Student's t [Student 1908].
   std::optional<double> coverage_factor;     ///< k of mean_interval, mean ± k s_r/√n.
-  std::optional<Outlier> outlier;            ///< Absent with fewer than three values, and if all are equal.
+  std::optional<Outlier> outlier;  ///< Absent if no value exceeds the limit, or with fewer than three.
 };
 
 /// \param values  at least one, finite.

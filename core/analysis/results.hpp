@@ -65,17 +65,18 @@ struct TestResults {
   /// one before, or its peak if the onset is not known.
   Estimate transition_time;
   Estimate cycle_count;  ///< Falls that are slips.
-  /// Slips that ended in sticking; the last slip does not tell. 0 in a regime that never sticks. Absent if
-  /// undecided, if fewer than half of the slips tell, or if only the shape of the cycles tells stick-slip.
+  /// Slips that ended in sticking. 0 in a regime that never sticks. Absent if undecided, if only the shape of
+  /// the cycles tells stick-slip, or if slips stuck but fewer than half of all tell how they ended. The last
+  /// never tells, but is taken for one that does in this rule.
   Estimate stick_cycle_count;
   Estimate period_median;          ///< s, from peak to peak.
   Estimate oscillation_frequency;  ///< Hz, cycles over time; ω/2π of a ring-down with a fit.
   Estimate static_coefficient;     ///< Traditional, by the method; absent if the trace begins under load.
   Estimate kinetic_coefficient;    ///< Traditional, by the method.
-  Estimate mu_s;                   ///< S of the model: mean over the slips, from `rung`.
-  Estimate mu_k;                   ///< K of the model: mean over the slips, from `rung`.
-  Estimate delta_mu;               ///< S − K.
-  Estimate amplitude;              ///< Half the mean range of the oscillation, coefficient.
+  Estimate mu_s;       ///< S of the model, by `rung`: mean over the slips, as a rule without the first.
+  Estimate mu_k;       ///< K of the model, by `rung`: mean over the slips, as a rule without the first.
+  Estimate delta_mu;   ///< S − K.
+  Estimate amplitude;  ///< Half the mean range of the oscillation, coefficient.
   Estimate gamma_over_2omega;
   Estimate omega;  ///< rad/s, damped.
   Estimate Q;      ///< Dimensionless speed.

@@ -68,10 +68,10 @@ struct SectionSettings {
   bool on_threads = false;    ///< Fits the next section beside this one; the estimates are the same.
 };
 
-/// Fits the slips section by section and combines the estimates. S − K that is not told from 0 is half of
-/// its bound, as by tell_bound(): if it is not positive but not clearly negative, or if no slip stuck and its
-/// standard error reaches half of the bound. The bound is S − K plus twice its total_error(), or the
-/// amplitude if that is less.
+/// Fits the slips section by section and combines the estimates. Where the model describes the test, S − K
+/// that is not told from 0 is half of its bound, as by tell_bound(): if it is not positive, or if no slip
+/// stuck and its standard error reaches half of the bound. The bound is S − K plus twice its total_error(),
+/// or the amplitude if that is less.
 /// \param slips  falls that are slips, in the order of time, not empty.
 /// \param sigma  noise of one scan, > 0.
 /// \param prior  of ω, γ and the stick rate; may be empty.

@@ -39,8 +39,8 @@ struct SlipEstimates {
   estimate::SlipFit fit;
   model::SharedParameters guess;  ///< By turning points and slopes: where the first try began.
   /// Fit of one S and one K to all slips but the first (with it if first_counts). Nullopt if the slips differ
-  /// by more than noise, one ended in kFree, they are fewer than three, `belt` is not constant, no periodic
-  /// stick-slip has their means, or a fit did not converge.
+  /// by more than noise, one ended in kFree, they are fewer than three with the first, `belt` is not
+  /// constant, no periodic stick-slip has their means, or a fit did not converge.
   std::optional<estimate::UniformFit> uniform;
   model::BeltMotion belt;     ///< Belt speed over the time of the trace.
   bool first_counts = false;  ///< Means include the first slip and those after a hold.
@@ -49,7 +49,8 @@ struct SlipEstimates {
 
   /// The tester's parameters, from `uniform` if present, else from `fit`. Requires fit.converged.
   [[nodiscard]] TesterEstimate tester() const;
-  /// S of a slip: c at its onset plus a/g, the friction that gives the sled the belt's acceleration a.
+  /// S of a slip, without the drift: c at its onset plus a/g, the friction that gives the sled the belt's
+  /// acceleration a.
   [[nodiscard]] double static_coefficient(const estimate::SlipWindow& window) const;
 };
 

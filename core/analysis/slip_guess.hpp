@@ -21,7 +21,7 @@ namespace stickslip::analysis {
 [[nodiscard]] double level_before(const estimate::Trace& trace, const detect::Fall& fall);
 
 /// Stick rate at the largest belt speed, 1/s: median slope of the rises, each between 30 and 70 % of its
-/// height, where the sled sticks if it does at all.
+/// height, where the sled sticks if it does at all. A rise is left out if the belt does not pull half way.
 /// \param slips  not empty.
 [[nodiscard]] double slope_of_sticks(const estimate::Trace& trace, std::span<const detect::Fall> slips);
 
@@ -43,8 +43,8 @@ namespace stickslip::analysis {
 [[nodiscard]] double trough_at(const estimate::Trace& trace, const detect::Fall& slip,
                                const model::SharedParameters& shared);
 
-/// Typical S − K: the median of √(amplitude² − (r/ω)²) [2] over the slips whose amplitude exceeds r/ω, the
-/// belt's part; the largest amplitude if none does.
+/// Typical S − K: the median of √(amplitude² − (r/ω)²) [2] over the slips whose amplitude, half the drop,
+/// exceeds r/ω, the belt's part; the largest amplitude if none does.
 [[nodiscard]] double typical_delta_mu(const estimate::Trace& trace, std::span<const detect::Fall> slips,
                                       const model::SharedParameters& shared);
 

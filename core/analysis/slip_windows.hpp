@@ -13,7 +13,8 @@
 
 namespace stickslip::analysis {
 
-/// Index of the pull that a slip belongs to, by the plan of the speed; 0 if the speed is constant.
+/// Index of the pull that a slip belongs to, by the speed of Trace::belt, planned or measured; 0 if that is
+/// constant.
 [[nodiscard]] std::size_t pull_of(const estimate::Trace& trace, const detect::Fall& slip);
 /// Whether slip i is the first of the test, or the first after a stop of the belt.
 [[nodiscard]] bool begins_a_pull(const estimate::Trace& trace, std::span<const detect::Fall> slips,

@@ -17,7 +17,7 @@ namespace stickslip::analysis {
 
 /// Free oscillation of the cell after one tap.
 struct Tap {
-  double at_s = 0.0;    ///< Time of the largest reading, after the first of the values.
+  double at_s = 0.0;    ///< Time of the reading farthest from the level, after the first of the values.
   TesterEstimate ring;  ///< ω and γ/2ω of the cell; v/g is 0.
 };
 
@@ -36,7 +36,8 @@ struct Taps {
 /// \param values  in any unit; finite; without gaps.
 /// \param scan_rate_Hz > 0. A cell above half of it seems to oscillate at another frequency below
 ///        (alias_Hz()).
-/// \return no tap if no reading exceeds the level by twelve standard deviations of the noise.
+/// \return no tap if no reading is off the level, to either side, by more than twelve standard deviations of
+///        the noise, or if there are fewer than twelve values. The level is the median of the values.
 [[nodiscard]] Taps find_taps(std::span<const double> values, double scan_rate_Hz);
 
 /// What a load cell is, in the terms of model::LoadCellDynamics.

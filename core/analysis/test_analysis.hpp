@@ -81,8 +81,9 @@ class TestAnalysis {
   /// Cycles completed since the last call, as the detector sees them live; finish() refines them. A cycle is
   /// complete when the next slip is seen, or the oscillation has died away.
   [[nodiscard]] std::vector<detect::Cycle> take_new_cycles();
-  /// Falls of the force detected since the last call. A fall is detected LiveDetector::kFallDelayScans after
-  /// the force has fallen by the hysteresis; whether it is a slip is not known yet.
+  /// Falls of the force detected since the last call; none before the loading. A fall is detected
+  /// LiveDetector::kFallDelayScans after the force has fallen by the hysteresis, or 1 if skipped.spikes;
+  /// whether it is a slip is not known yet.
   [[nodiscard]] std::vector<detect::FallBegun> take_new_falls();
   /// Ends the live detection and completes the cycle under way; finish() does this too.
   void end_live();

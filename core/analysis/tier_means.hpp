@@ -16,7 +16,7 @@ class TierMeans {
   /// The next cycle; one without S or K is ignored.
   void add(const detect::LiveCycle& cycle) noexcept;
   /// Peak and trough of the next slip, also of one without S and K. The standard errors of S and K are at
-  /// least those of the mean peak and the mean middle of peak and trough.
+  /// least those of the mean peak and the mean middle of peak and trough, without the first slip as above.
   void add_level(double peak, double trough) noexcept;
   /// Fills mu_s, mu_k, delta_mu and delta_mu_scatter; absent without a cycle, the scatter with fewer than
   /// three. Standard errors follow from the scatter of the cycles, of which neighbours are correlated; one

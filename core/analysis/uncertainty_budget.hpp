@@ -37,7 +37,7 @@ struct BudgetFacts {
 enum class BudgetState {
   kCounted,   ///< Its variance is a part of u².
   kIncluded,  ///< Another line counts it; the note says which.
-  kNone,      ///< Does not affect this quantity; the note says why.
+  kNone,      ///< Does not affect this quantity, or is known to be 0; the note says why.
   kUnknown,   ///< The note says what to do. The combined uncertainty lacks it.
 };
 
@@ -76,7 +76,8 @@ struct UncertaintyBudget {
 
 /// Budget of one result of a test; nullopt if that has no value. The random part is the standard error, or of
 /// the static coefficient, which is one scan, the noise of a scan. The systematic parts are those of the
-/// estimate. The line "replicates" is always kUnknown: one test does not tell how sheets scatter.
+/// estimate, and the pull speed for a kinetic coefficient over a travel. The line "replicates" is always
+/// kUnknown: one test does not tell how sheets scatter.
 /// \param quantity  quantities()[i] with i in kBudgetQuantities.
 [[nodiscard]] std::optional<UncertaintyBudget> test_budget(const TestResults& results,
                                                            const Quantity& quantity,

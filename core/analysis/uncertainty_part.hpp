@@ -22,7 +22,7 @@ enum class UncertaintySource : std::uint8_t {
   kZero,         ///< Reading of the unloaded load cell.
   kClock,        ///< Quartz of the computer.
   kDamping,      ///< Whether the damper's force counts at the onset; a damping that is held.
-  kCreep,        ///< Creep of the contact before a slip that does not stick again.
+  kCreep,        ///< Creep of the contact before the slips, where none of the test ends in sticking.
   kMisfit,       ///< What differs from the fit alike in each slip.
   kRung,  ///< Distance to the result of another rung or of the slips' own fits, or from K to the mean force.
   kCorrection,  ///< By turning points: the whole correction for belt and damping.
@@ -56,8 +56,8 @@ class SystematicParts {
   std::array<std::optional<double>, kUncertaintySourceCount> sizes_{};
 };
 
-/// Visits the parts in the order of the sources. \param visit  called as visit(UncertaintySource,
-/// std::optional<double>&).
+/// Visits the parts in the order of the sources, also those that are nullopt. \param visit  called as
+/// visit(UncertaintySource, std::optional<double>&), const for const parts.
 template <typename Parts, typename Visitor>
 void for_each_part(Parts& parts, Visitor&& visit) {
   for (std::size_t i = 0; i < kUncertaintySourceCount; ++i) {

@@ -81,7 +81,7 @@ struct FindingKind {
   std::string_view source;  ///< Check that finds it: "self-check", "clock", "zero" …
   Severity severity;
   std::string_view meaning;  ///< When it is found; one sentence without a full stop.
-  std::string_view action;   ///< What to do; an imperative without a full stop.
+  std::string_view action;   ///< What to do, if anything; without a full stop.
 };
 
 [[nodiscard]] std::span<const FindingKind, kFindingCodes> finding_kinds() noexcept;

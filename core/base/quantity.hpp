@@ -51,15 +51,15 @@ inline constexpr Dimension kLastDimension = Dimension::kTemperature;
 /// "number unit" in SI units; blanks between and around them are optional. A dimensionless quantity may stand
 /// without a unit or in %, ppm. Micro is "u" or "µ", degree is "deg" or "°", a square is "^2" or "²", a cube
 /// only "^3".
-/// \return the value, or an error of kind kUsage that names the text and what is allowed, without a place:
-/// the caller prefixes file and key.
+/// \return the value, or an error of kind kUsage, which begins with the text in quotes and says what is wrong
+/// or allowed, without a place: the caller prefixes file and key.
 [[nodiscard]] Result<double> parse_quantity(std::string_view text, Dimension dimension);
 
 /// What an entry (an option, a field of a request) does with a number that has no unit though its dimension
 /// has some. A dimensionless number needs none.
 enum class BareNumber {
   kRefused,        ///< Refused, as in configuration files.
-  kOnlyZero,       ///< Refused but for 0, which without a unit is no temperature.
+  kOnlyZero,       ///< Refused but for 0; as a temperature 0 is refused, too.
   kSiWithWarning,  ///< Read in the SI unit, as version 0.1 did; EnteredQuantity::warning says so.
   kSi,             ///< Read in the SI unit, as the entry's help says.
 };

@@ -96,7 +96,7 @@ class Settings {
   /// [[key]] tables in order; none if absent. A value that is no array of tables is an error, and gives none.
   [[nodiscard]] std::vector<Settings> tables(std::string_view key);
 
-  /// A number in SI units, written as a string with unit, or bare if dimensionless. Must be finite.
+  /// A number in SI units, written as a string with unit; a dimensionless one may be bare. Must be finite.
   /// \param fallback  value of an absent key, SI, not checked. All getters require the key without it.
   [[nodiscard]] double quantity(std::string_view key, Dimension dimension, Limits limits,
                                 std::optional<double> fallback = std::nullopt);

@@ -23,14 +23,14 @@ namespace stickslip::daq {
 /// Physical quantity of a raw reading.
 enum class RawQuantity {
   kCounts,       ///< A/D code, 0 … maxdata.
-  kVolts,        ///< Imported, V.
+  kVolts,        ///< Imported, or simulated without a converter; V.
   kForce_N,      ///< Imported, N.
   kCoefficient,  ///< Imported, force over the sled's weight.
 };
 
 /// Properties of the board in use: values that it granted, unless the name says requested.
 struct BoardInfo {
-  std::string driver;      ///< "comedi", "simulated", "replay".
+  std::string driver;      ///< "comedi", "simulated", "replay"; in the record of an imported trace "import".
   std::string board_name;  ///< Name reported by the board.
   std::string device;      ///< Path or scene or file; for people.
   std::string serial;      ///< Serial number; empty: none. Not recorded.

@@ -28,7 +28,7 @@ struct LoadCellFit {
   std::optional<double> zero_standard_error_V;        ///< From three points on.
   std::optional<double> residual_V;  ///< Standard deviation about the line, from three points on.
   /// Mean residual of the points under a lower load than the point before, minus that of those under a higher
-  /// one; absent unless there are points of both kinds.
+  /// one, without saturated points; absent unless there are points of both kinds.
   std::optional<double> hysteresis_V;
   int used = 0;        ///< Number of points used.
   std::string reason;  ///< Set exactly when there is no load cell.

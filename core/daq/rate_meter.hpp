@@ -16,7 +16,9 @@ namespace stickslip::daq {
 
 /// State from which scans are numbered after a halt, also with another board object.
 struct Continuation {
-  ScanIndex end = 0;        ///< One past the last scan delivered.
+  /// One past the last scan that the board delivered; after RateMeter::started(), until a scan comes, the
+  /// index of the first one due.
+  ScanIndex end = 0;
   ClockAnchor anchor;       ///< A scan whose time is known.
   double scan_rate_Hz = 0;  ///< Measured if known to 100 ppm, else granted.
 };

@@ -19,7 +19,7 @@ struct ClockStamp {
   std::int64_t monotonic_ns = 0;
   std::int64_t realtime_ns = 0;
   /// True if the read waited for the scans, so that the stamp is the time of the last one. False while a
-  /// backlog is read.
+  /// backlog is read. A replay always sets it.
   bool prompt = true;
 };
 
@@ -35,8 +35,8 @@ struct ScanBlock {
   std::uint64_t overrun_count = 0;       ///< Halts of the board.
   std::uint64_t suspend_count = 0;       ///< Suspends of the computer.
   std::uint64_t dropped_scan_count = 0;  ///< Scans dropped by a full ring.
-  /// Raw readings: A/D counts (a double holds every count of up to 53 bits exactly), or the values of an
-  /// imported trace; BoardInfo::quantity tells which, and their unit.
+  /// Raw readings: A/D counts (a double holds every count of up to 53 bits exactly), or the values of a trace
+  /// that was imported, or simulated without a converter; BoardInfo::quantity tells which, and their unit.
   std::array<double, kMaxScans> raw{};
   bool has_second = false;  ///< Whether the board has a second channel; the same in all its blocks.
   /// Codes of the second channel; SecondChannel::kNoCode for a missing one.

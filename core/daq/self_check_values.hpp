@@ -20,7 +20,7 @@ struct SelfCheck {
   std::optional<double> zero_standard_error_N;
   std::optional<double> drift_N_per_s;
   std::optional<double> drift_standard_error_N_per_s;
-  std::optional<double> noise_N;         ///< Standard deviation of one scan.
+  std::optional<double> noise_N;  ///< Standard deviation of one scan about drift and hum, if hum is known.
   std::optional<double> hum_at_50_Hz_N;  ///< Amplitude.
   std::optional<double> hum_at_60_Hz_N;  ///< Amplitude.
   std::optional<double> hum_standard_error_N;

@@ -49,7 +49,8 @@ struct WeighedCalibration {
 };
 
 /// Largest accepted wander of a reading, relative to its difference from the tare; of a reading without
-/// weight, relative to the largest difference from the tare, or to the converter's span while there is none.
+/// weight, relative to the largest difference from the tare, or to the converter's span while there is none;
+/// no limit if neither is known.
 inline constexpr double kLargestWander = 0.005;
 /// Smallest accepted difference of a weight from the tare, relative to the converter's span; below it, 1 % of
 /// the difference would be less than 1/10 000 of the span.

@@ -64,7 +64,9 @@ struct CaptureEvidence {
   /// Onset of the next slip in the captured trajectory; may be yet to come; infinity if the belt never raises
   /// c to S.
   double next_onset_s = std::numeric_limits<double>::quiet_NaN();
-  double residual_sigmas = 0.0;  ///< Robust standard deviation of the better trajectory's residuals, in σ.
+  /// Robust standard deviation of the better trajectory's residuals, in σ. The prior terms of the captured
+  /// one count as residuals.
+  double residual_sigmas = 0.0;
   /// There were enough points for an evaluation: eight rows (ScanRow). False also for too many points.
   bool known = false;
 };

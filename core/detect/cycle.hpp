@@ -26,23 +26,26 @@ enum CycleFlag : std::uint8_t {
 /// A cycle, from one slip to the next. Times of events are seconds after the first scan of the test's record:
 /// (scan index − first index of the record) / granted rate. Members that are unknown are set to NaN.
 struct Cycle {
-  std::int64_t number = 0;         ///< From 0.
-  base::ScanIndex first_scan = 0;  ///< Scan nearest to the peak, index of the acquisition.
-  double onset_time_s = 0.0;       ///< Slip onset.
-  double capture_time_s = 0.0;     ///< Slip ends in sticking; NaN if not, or if unknown.
-  double peak_time_s = 0.0;        ///< Maximum of the force, interpolated between scans.
-  double period_s = 0.0;           ///< Peak to next peak; NaN if none; after the test also before a break.
-  double stick_time_s = 0.0;       ///< From the capture before (or rest in a hold) to this onset.
-  double slip_time_s = 0.0;        ///< Onset to capture; NaN if not captured, or if unknown.
-  double peak = 0.0;               ///< Coefficient at the maximum, interpolated.
-  double trough = 0.0;             ///< Coefficient at the following minimum, interpolated.
-  double force_drop = 0.0;         ///< peak − trough, as a coefficient.
-  double delta_mu = 0.0;           ///< S − K of this slip; NaN if not estimated.
+  std::int64_t number = 0;  ///< From 0.
+  /// Scan nearest to the peak, index of the acquisition; LiveDetector::add() counts otherwise.
+  base::ScanIndex first_scan = 0;
+  double onset_time_s = 0.0;    ///< Slip onset.
+  double capture_time_s = 0.0;  ///< Slip ends in sticking; NaN if not, or if unknown.
+  double peak_time_s = 0.0;     ///< Maximum of the force, interpolated between scans.
+  double period_s = 0.0;        ///< Peak to next peak; NaN if none; after the test also before a break.
+  /// From the capture before (or rest in a hold) to this onset; after a hold, if the onset is unknown and no
+  /// fit describes the test, to the peak.
+  double stick_time_s = 0.0;
+  double slip_time_s = 0.0;  ///< Onset to capture; NaN if not captured, or if unknown.
+  double peak = 0.0;         ///< Coefficient at the maximum, interpolated.
+  double trough = 0.0;       ///< Coefficient at the following minimum, interpolated.
+  double force_drop = 0.0;   ///< peak − trough, as a coefficient.
+  double delta_mu = 0.0;     ///< S − K of this slip; NaN if not estimated.
   double delta_mu_standard_error = 0.0;
   double slip_speed_ratio = 0.0;  ///< Largest slip speed over drive speed, −c′/r [Penner 1995, (18)].
   std::uint8_t flags = 0;         ///< CycleFlag bits.
-  /// Pull speed at the onset, or at the peak if no fit of the test tells onsets, if it is measured or
-  /// changes; else NaN. Set at the end of the test.
+  /// Pull speed at the onset, if it is measured or changes; else NaN. At the peak if the onset is unknown and
+  /// no fit describes the test; NaN if one does. Set at the end of the test.
   double pull_speed_m_per_s = std::numeric_limits<double>::quiet_NaN();
   /// Log-likelihood ratio of capture over free oscillation: > 0 speaks for capture. Set at the end of the
   /// test, from the fit of the whole test or, without that, from LiveCycle::evidence; NaN if undetermined, as

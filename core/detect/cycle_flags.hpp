@@ -22,7 +22,7 @@ class CycleFlags {
     to_highest_ |= after_;
     after_ = 0;
   }
-  /// The highest scan was the peak of a slip: those before it belong to the cycle that ends there.
+  /// The highest scan was the peak of a slip: flags up to and with it belong to the cycle that ends there.
   void end_cycle_at_peak() noexcept { cycle_ |= to_highest_; }
   /// A cycle begins at that peak: flags of scans after it are its own.
   void begin_cycle() noexcept {

@@ -20,7 +20,8 @@ struct Fall {
   double peak = 0.0;       ///< Value at the maximum, interpolated.
   double trough = 0.0;     ///< Value at the minimum, interpolated.
   /// Scans from the last above 90 % to the first below 10 % of the drop. For a fall of more than
-  /// signal::kMostSteps scans it may be too large by 0.2 % of the time from peak to trough.
+  /// signal::kMostSteps scans it may be too large by 0.2 % of the time from peak to trough. 0 if the first
+  /// below comes before the last above.
   double duration = 0.0;
   /// Scans from the minimum before to the peak; 0 if the trace begins at the peak.
   double rise_duration = 0.0;

@@ -17,7 +17,7 @@ class Loading {
   /// The next scan; not to be called after it returned true, which could move the begin.
   /// \param sigma  noise of one scan; infinite while unknown.
   /// \param count  scans so far, with this one and those that add() did not get.
-  /// \return whether the loading is seen at this scan.
+  /// \return whether the loading is seen at this scan; it began two scans before, by `count`.
   bool add(double value, double sigma, std::int64_t count) noexcept {
     lowest_ = std::min(lowest_, value);
     above_ = value - lowest_ > SlipRule::kSignificantSigmas * sigma ? above_ + 1 : 0;

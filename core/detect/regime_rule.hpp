@@ -15,7 +15,8 @@ namespace stickslip::detect {
 struct RegimeVerdict {
   model::Regime regime = model::Regime::kUndecided;
   std::string reason;  ///< For people; never empty.
-  /// kMixed only: index of the first slip that ended otherwise than the one before, in the likeliest course.
+  /// kMixed only: index of the first slip that ended otherwise than the last before it that tells, in the
+  /// likeliest course.
   std::optional<std::size_t> transition_slip;
   std::size_t told = 0;  ///< Slips that tell how they ended: log-likelihood ratio other than 0.
   /// How many of the slips that tell ended in sticking, in the likeliest course of the regime: 0 in a regime

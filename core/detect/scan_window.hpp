@@ -43,12 +43,12 @@ struct ScanRow {
 /// Rows of one slip, at most forty a period. Rows of the last evaluation are reused.
 class ScanWindow {
  public:
-  /// Makes the rows of these points. Rows that are unchanged keep their outlier marks.
+  /// Makes the rows of these points. Rows that the result counts keep their outlier marks.
   /// \param points  of one slip, not empty, at most CycleBuffer::kMostPoints. From call to call with the same
   ///        first time, points may only be added at the end and merged: other values are not noticed.
   /// \param sigma  noise of one scan, > 0.
-  /// \return number of leading rows that are unchanged since the last call; 0 after a change of ω, γ, sigma
-  /// or the first point.
+  /// \return number of leading rows known to be unchanged since the last call; 0 after points before the last
+  /// row were merged, and after a change of ω, γ, sigma or the first point.
   std::size_t lay_out(std::span<const estimate::CyclePoint> points, const model::SharedParameters& shared,
                       double sigma) noexcept;
 

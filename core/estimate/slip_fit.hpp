@@ -52,7 +52,7 @@ struct SlipFit {
   /// from slip to slip.
   [[nodiscard]] Eigen::Matrix3d mean_covariance(const std::vector<SlipWindow>& windows) const;
   /// Covariance of one slip's (onset, S, K), including the uncertainty of ω, γ and r, and scaled by
-  /// HuberSums::covariance_scale(). Zero if the fit could not begin; no estimate unless it converged.
+  /// HuberSums::covariance_scale(). No estimate unless the fit converged.
   [[nodiscard]] Eigen::Matrix3d covariance(const SlipWindow& window) const;
   /// Standard error of the slip's onset, s.
   [[nodiscard]] double onset_error_s(const SlipWindow& window) const;

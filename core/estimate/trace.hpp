@@ -37,9 +37,9 @@ struct Trace {
 
   /// Positions of the first scans after breaks, rising: the motion between such a scan and the one before it
   /// is unknown. A counted gap shorter than half an oscillation is no break, unless the cycle that holds it
-  /// is too long.
+  /// is too long. Empty if no slip was found.
   std::vector<std::size_t> breaks{};
-  double lost_s = 0.0;  ///< Time without scans, over all gaps.
+  double lost_s = 0.0;  ///< Time without scans, over all gaps; 0 if no slip was found.
 
   /// The coefficient without the drift.
   [[nodiscard]] double level(std::size_t scan) const { return value[scan] - drift.at(time_s[scan]); }

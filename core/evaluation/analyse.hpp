@@ -25,7 +25,8 @@ class RecordAnalysis {
  public:
   /// \param scratch_folder  where the scans of a long record may lie for the time being; empty: in memory.
   /// \param prior  of the tester's parameters; empty: the characterisation in the record, if it has one.
-  /// \param gaps  of the record: whether the length of each was counted or estimated.
+  /// \param gaps  of the record: whether the length of each was counted or estimated. A gap that is not
+  /// among them is taken as counted.
   /// Errors: kUsage if the header does not allow it, such as by no scan rate, counts without a load cell, or
   /// a method, estimator, `kept` or characterisation that cannot be read.
   [[nodiscard]] static base::Result<RecordAnalysis> make(const record::RecordHeader& header,

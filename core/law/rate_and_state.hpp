@@ -31,7 +31,8 @@ struct RateAndState {
   Parameter b;                   ///< Ageing; of natural logarithms.
   double critical_slip_m = 0.0;  ///< D_c at a and b as found; may be infinite or NaN unless `is_told`.
   /// D_c lies between critical_slip_m over and times this factor, by what the closed form leaves open
-  /// (kCriticalSlipFactor) and the 95 % intervals of b and b − a.
+  /// (kCriticalSlipFactor) and the 95 % intervals of b and b − a. At least kCriticalSlipFactor; may be
+  /// infinite, or NaN unless `is_told`.
   double within_factor = 0.0;
   /// Whether the law is told: a exceeds its 99 % interval, b and b − a exceed their 95 % intervals, each with
   /// the systematic part of the values, and D_c is finite. a must do so with and without the correction for
@@ -41,7 +42,8 @@ struct RateAndState {
   /// interval with the systematic part of the values.
   bool may_have_none = true;
   double between_variance = 0.0;  ///< Variance of S between pulls, beyond their own errors.
-  /// S of each test by the law; nullopt for a test that is not used.
+  /// S of each test by the law, in the order of the tests, to be compared with LawTest::S; nullopt for a test
+  /// that is not used.
   std::vector<std::optional<double>> S;
 };
 
@@ -59,8 +61,8 @@ inline constexpr double kDirectEffectPart = 0.3;
 /// rest for less than five times the duration of a slip, or have no S above K, are left out.
 ///
 /// \param points  S over log₁₀ of the stick time in s. \param of_tests  index of the test of each point.
-/// \return nullopt without a sheet with holds, without three slow pulls of other sheets at two speeds, or
-/// without a degree of freedom for b.
+/// \return nullopt without a sheet with holds, without three slow pulls of other sheets at two stick times,
+/// or without a degree of freedom for b.
 [[nodiscard]] std::optional<RateAndState> rate_and_state(std::span<const LawTest> tests,
                                                          std::span<const Point> points,
                                                          std::span<const std::size_t> of_tests);

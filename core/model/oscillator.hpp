@@ -55,7 +55,7 @@ struct DampedBasis {
   double sine;    ///< e^(−γt/2) Sn(ω², t), s
 };
 
-/// The basis at t_s. For t_s ≥ 0 it does not overflow, however strong the damping.
+/// The basis at t_s. For t_s ≥ 0 and γ ≥ 0 it does not overflow, however strong the damping.
 /// \param t_s  ≥ 0; also negative if the oscillator oscillates.
 [[nodiscard]] DampedBasis damped_basis(const Oscillator& oscillator, double t_s) noexcept;
 

@@ -33,7 +33,8 @@ inline constexpr double kLargestGammaOver2Omega = 100.0;
 [[nodiscard]] double threshold_speed_m_per_s(const Oscillator& oscillator, double delta_mu,
                                              double gravity_m_per_s2) noexcept;
 
-/// S − K from a measured threshold speed: inverse of threshold_speed_m_per_s(). 0 without damping.
+/// S − K from a measured threshold speed: inverse of threshold_speed_m_per_s(). 0 without damping; NaN if
+/// γ/2ω is outside the domain of Q_threshold().
 [[nodiscard]] double delta_mu_of_threshold_speed(const Oscillator& oscillator, double threshold_speed_m_per_s,
                                                  double gravity_m_per_s2) noexcept;
 

@@ -35,7 +35,7 @@ struct ModeInterval {
   Mode mode = Mode::kStick;
 };
 
-/// True S and K of one slip that began from sticking.
+/// True S and K of one slip that began from sticking. K is without its dependence on the speed.
 struct TrueCycle {
   double onset_time_s = 0.0;  ///< Seconds after the first scan of the record, by its granted scan rate.
   double mu_s = 0.0;
@@ -62,14 +62,16 @@ struct TestTruth {
   double mu_k = 0.0;  ///< K: averaged as mu_s; of sliding at the speed of the belt.
   double omega_rad_per_s = 0.0;
   double gamma_over_2omega = 0.0;
-  /// At the first onset. Without a slip the nominal speed; 0 if that changes, and without a pull.
+  /// At the first onset. Without a slip the scene's `constant_speed`; 0 without that, with `speed_ramp`, and
+  /// without a pull.
   double pull_speed_m_per_s = 0.0;
   Regime regime = Regime::kUndecided;
-  /// Traditional coefficients of the noise-free force. Each is nullopt if the pull is too short for it; both
-  /// without a slip.
+  /// Traditional coefficients of the noise-free force, by the method of the test. Each is nullopt if the pull
+  /// is too short for it; both without a slip.
   std::optional<double> static_coefficient;
   std::optional<double> kinetic_coefficient;
-  /// By true time, not by the granted scan rate. Nullopt unless there are two slips, or one that rings down.
+  /// Mean frequency of the onsets; with a single slip ω/2π if it rings down, else nullopt. By true time, not
+  /// by the granted scan rate. Nullopt without a slip.
   std::optional<double> oscillation_frequency_Hz;
   /// Half the range of the coefficient in the first slip; nullopt without a slip.
   std::optional<double> amplitude;

@@ -24,7 +24,7 @@ enum class BenchState {
 };
 inline constexpr std::size_t kBenchStates = 6;
 
-/// No test runs, and no force of the last one is left.
+/// Idle or armed: no test runs, and no force of the last one is left. False if degraded.
 [[nodiscard]] constexpr bool rests(BenchState state) noexcept {
   return state == BenchState::kIdle || state == BenchState::kArmed;
 }

@@ -48,8 +48,9 @@ struct ProcessorSettings {
   /// Nullopt for the first acquisition.
   std::optional<daq::ScanIndex> continues_at;
   /// Facts of the record that is replayed; null for a bench. They replace clock anchors, read latency,
-  /// self-check (if it has one), unloaded level and the causes of gaps, and the start and stop of its notes
-  /// are carried out again; with a start, force begins no test.
+  /// self-check (if it has one), unloaded level and the causes of gaps. The first anchor gives the date at
+  /// which a calibration may have expired. The sinks get its notes during the test, and its start and stop
+  /// are carried out again. With a start, force begins no test.
   std::shared_ptr<const daq::RecordedFacts> recorded;
   std::optional<daq::SecondChannel> second;  ///< Second channel of the board; nullopt if there is none.
   /// Whether the stamps are of the machine's own clock. If not, tests have no clock anchors, measured
@@ -75,11 +76,11 @@ class Processor {
   /// To be called after the last block: ends a running test with the latest scan; the bench is then degraded.
   void finish(EndCause cause);
   /// To be called after finish(): `count` scans, ≥ 0, came after the latest block and were lost on the way
-  /// here. Tells the sinks a gap between tests of cause kRingFull.
+  /// here. Tells the sinks a gap between tests of cause kRingFull, unless `count` is 0.
   void lost_at_end(std::int64_t count);
 
   // Commands, in processor_commands.cpp; between two blocks. One that is refused changes nothing; its report
-  // says why. `who` is the name of the user.
+  // says why. arm(), start() and stop() are refused as by step(). `who` is the name of the user.
 
   /// Arms the bench: force above the trigger begins a test, also if it is there already.
   [[nodiscard]] CommandReport arm(const std::string& who);
@@ -97,7 +98,8 @@ class Processor {
   /// coefficient, the larger of SegmenterSettings::start_coefficient and UnloadedLevel::kFarthest or more.
   [[nodiscard]] TareReport tare(const std::string& who);
   /// Replaces the calibration from the next scan on. Refused unless the bench is idle. Scans kept for the
-  /// next test are dropped: its record begins after this call.
+  /// next test are dropped: its record begins after this call. Those kept for its self-check and for tare()
+  /// are dropped too, and the unloaded level is that of the settings again.
   /// \param calibration  of the same board.
   /// \param in_use  as ProcessorSettings::calibration.
   [[nodiscard]] CommandReport recalibrate(daq::Calibration calibration, const CalibrationInUse& in_use,

@@ -39,7 +39,8 @@ struct TestFacts {
   CalibrationInUse calibration = {};
   double sled_mass_kg = 0.0;
   double normal_load_N = 0.0;
-  /// The test was cut out of a longer sequence of scans, so that there should be unloaded scans before it.
+  /// The test was cut out of a longer sequence of scans, so that there should be unloaded scans before it. If
+  /// they were too few for a self-check, a finding says so.
   bool was_cut_out = false;
   const daq::SelfCheck* self_check = nullptr;  ///< Null: there were no unloaded scans.
   /// Coefficient read by the unloaded cell before and after the test; nullopt if unknown.

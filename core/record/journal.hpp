@@ -114,7 +114,7 @@ struct EntryPlace {
 struct JournalReading {
   std::int64_t format_version = kFormatVersion;  ///< The header's.
   /// With JournalScans::kCount its scan, raw, second and true_coefficient are empty. Scans missing between
-  /// two runs without a gap entry become gaps with the cause damaged, or unknown if every byte was readable.
+  /// two runs without a gap entry become gaps with the cause unknown if why_unread() is empty, else damaged.
   Record record;
   std::size_t scan_count = 0;
   std::vector<ScanRun> runs;  ///< All scans, rising.
@@ -126,9 +126,9 @@ struct JournalReading {
   std::vector<UnreadBytes> damaged;     ///< Unreadable bytes and invalid entries, in the order of position.
   std::optional<UnreadBytes> torn_end;  ///< Incomplete end of the file, as after a stop.
 
-  /// Number of damaged bytes.
+  /// Number of bytes in `damaged`; torn_end does not count.
   [[nodiscard]] std::uint64_t damaged_size() const noexcept;
-  /// Reason why the first unread bytes could not be read; empty if all were read.
+  /// Reason of the first of `damaged`, else of torn_end; empty if there is neither.
   [[nodiscard]] std::string why_unread() const;
 };
 

@@ -33,9 +33,10 @@ class JournalLock {
 [[nodiscard]] bool lock_journal(int descriptor, const FileCalls& calls = system_calls()) noexcept;
 
 /// Removes a journal that is empty or consists of a torn end only (JournalEntries::torn_end()). A stop before
-/// the header was synced leaves such a file; it contains no data. Other journals are not changed.
-/// \return whether it was removed. Errors: kFailure if it does not exist, cannot be read or removed, or if
-/// another process holds it for longer than `longest`.
+/// the header was synced leaves such a file; it contains no data. Other journals, and symbolic
+/// links to journals, are not changed.
+/// \return whether it was removed. Errors: kFailure if it does not exist, is no regular file, cannot be read
+/// or removed, or if another process holds it for longer than `longest`.
 [[nodiscard]] base::Result<bool> remove_if_empty(const std::filesystem::path& journal,
                                                  std::chrono::milliseconds longest = {});
 

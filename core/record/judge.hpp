@@ -21,16 +21,18 @@ void judge_journal(const std::filesystem::path& path, Verdict& verdict);
 
 // For records.
 
-/// Reads every data set under `file`, except texts of variable length, to locate damage: those in chunks
-/// chunk by chunk, others as a whole. A chunk that is not stored is damage, and so is what would be
-/// more than 256 MiB to read at once. After 100 damaged chunks of a data set the rest of it is not read.
+/// Reads every data set under `file` to locate damage: those in chunks chunk by chunk, others as a whole. Of
+/// these it does not read texts and arrays of variable length. A chunk that is not stored is damage, and so
+/// is what would be more than 256 MiB to read at once. After 100 damaged chunks of a data set the rest of it
+/// is not read.
 void judge_chunks(hid_t file, Verdict& verdict);
 /// Judges the rows of raw: order of the scans, jumps without a gap, values that the board cannot give, and
 /// what is computed from other columns (time, force, flag of saturation, second channel). If there is a scan,
 /// calls judge_clocks(): call judge_status() before. Sets scans_present and sha256_found, and compares
-/// neither.
+/// neither. Reports each kind of fault once, at its first row.
 /// \param record  everything except scans and spikes.
 /// \throws std::exception if a column is missing, unreadable or of another length, or an index out of range.
+/// Only codes of the second channel, and forces beside raw values that are no counts, may be missing.
 void judge_raw(hid_t entry, const Record& record, Verdict& verdict);
 
 // For records and journals.
@@ -38,8 +40,8 @@ void judge_raw(hid_t entry, const Record& record, Verdict& verdict);
 /// Judges the clock anchors. Damage: scans or monotonic times that do not rise, or an anchor outside a
 /// complete test. Incomplete: a scan rate that differs from the granted one by more than 1 % plus 5 standard
 /// errors. A note: an anchor outside any other test, the date was set by more than 1 s, or the scans were
-/// read too late to tell the rate. Rate and date are judged only if the verdict has no damage. Call
-/// judge_status() before.
+/// read too late to tell the rate. Rate and date are judged only if the verdict has no damage: the date from
+/// 2 anchors on, the rate from RateFit::kFewestAnchors on. Call judge_status() before.
 /// \param first,end  scans of the test: [first, end).
 void judge_clocks(const Record& record, daq::ScanIndex first, daq::ScanIndex end, Verdict& verdict);
 /// Judges the facts of the header. Damage: no scan rate, no UUID, counts or volts without load cell, counts

@@ -18,7 +18,9 @@ namespace stickslip::record {
 /// \param method  its name is not empty and has no space, else the text cannot be read back.
 [[nodiscard]] std::string method_text(const model::Method& method);
 
-/// Reads what method_text() wrote; an empty text is the default method. Any other text: kUsage.
+/// Reads what method_text() wrote, with the settings in any order; an empty text is the default method. It
+/// checks and ignores the setting `estimator` of version 0.1. Errors: kUsage without a name, for an unknown
+/// setting or a bad value, and if there is neither kinetic_cycles nor kinetic_travel.
 [[nodiscard]] base::Result<model::Method> method_from_text(std::string_view text);
 
 }  // namespace stickslip::record

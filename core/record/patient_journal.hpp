@@ -43,7 +43,7 @@ class PatientJournal {
   /// \param second  codes of the second channel, one for each scan; empty if there is no such channel.
   bool add_scans(daq::ScanIndex first, std::span<const double> raw, const daq::ClockStamp& stamp,
                  std::span<const std::int32_t> second = {});
-  /// Of kept scans only: read_journal() takes values of scans that are not there for damage.
+  /// Of kept scans only: read_journal() takes values of which no scan is in the journal for damage.
   bool add_true_coefficients(daq::ScanIndex first, std::span<const double> coefficient);
   bool add_cycle(const detect::Cycle& cycle);
   bool add_anchor(const ClockAnchor& anchor);

@@ -33,8 +33,9 @@ inline constexpr std::int64_t kOldestFormatVersion = 1;  ///< Oldest version tha
 
 /// Completeness of a record. Gaps in the acquisition, such as overruns, do not change it.
 enum class Status {
-  kComplete,     ///< The test ended and everything was written.
-  kInterrupted,  ///< The program was stopped or killed before the end of the test.
+  kComplete,  ///< The test ended and everything was written.
+  /// The program was stopped or killed before the end of the test. A part of the journal may be damaged too.
+  kInterrupted,
   /// The test ended and all its scans are here; unreadable bytes after the journal's end entry were dropped.
   kRecovered,
   /// Data are missing: the disk refused scans, the board went away before the end of the test, or a part of
@@ -92,8 +93,9 @@ struct CalibrationFacts {
   bool operator==(const CalibrationFacts&) const = default;
 };
 
-/// Settings of the segmenter (pipeline::SegmenterSettings), which cut the test out of the scans; absent if it
-/// was not used. Coefficients are force over normal load.
+/// Settings of the segmenter (pipeline::SegmenterSettings), which cut the test out of the scans. Absent if it
+/// was not used, and for imported traces, which it cuts with its default settings. Coefficients are force
+/// over normal load.
 struct PlanFacts {
   std::optional<double> start_coefficient;
   std::optional<double> start_dwell_s;
@@ -146,7 +148,8 @@ struct ProcessFacts {
   bool operator==(const ProcessFacts&) const = default;
 };
 
-/// What is known of a test before its first scan; the first entry of a journal.
+/// What is known of a test before its first scan; the first entry of a journal. "Imported" below is a trace
+/// of another program: an imported table of `stickslip export` has the header of its record.
 struct RecordHeader {
   std::string uuid;   ///< Identifies the test for ever; JournalWriter and PatientJournal make one if empty.
   std::string title;  ///< For people.
@@ -155,7 +158,8 @@ struct RecordHeader {
   std::optional<std::int64_t> test_number;
   /// Scan at which the force or a command began the test; absent if imported or simulated without a clock.
   std::optional<daq::ScanIndex> trigger_scan;
-  /// Time of the trigger scan, ns since 1970; absent if unknown. Imported: of the first scan of the test.
+  /// Clock reading at the block with the trigger scan, less the delay by a stall, ns since 1970; in a replay
+  /// that of the replay. Absent if unknown. Imported: time of the first scan of the test.
   std::optional<std::int64_t> start_realtime_ns;
   daq::BoardInfo board;
   std::optional<daq::LoadCell> load_cell;  ///< Required if the board gives counts.

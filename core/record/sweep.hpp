@@ -47,7 +47,7 @@ struct SweepFacts {
   [[nodiscard]] std::vector<std::size_t> indices_of(std::int64_t point) const;
 };
 
-/// One run. Its truth has no modes, no cycles and no texts.
+/// One run. Its truth has no modes, no cycles and no scene_text.
 struct SweepRun {
   std::int64_t number = 0;
   analysis::TestResults results;

@@ -12,8 +12,8 @@
 
 namespace stickslip::record {
 
-/// Text of the file: TOML with a comment on each key. ω and γ/2ω have 10 digits, their standard errors and
-/// correlation 6, so that load_tester() gives rounded values.
+/// Text of the file: TOML with comments. ω and γ/2ω have 10 digits, their standard errors and correlation 6,
+/// so that load_tester() gives rounded values.
 /// \param date  ISO 8601, of the latest ring-down; empty if unknown.
 [[nodiscard]] std::string tester_text(const analysis::Characterisation& characterisation,
                                       std::string_view date);

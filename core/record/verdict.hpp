@@ -46,7 +46,7 @@ struct Finding {
 /// The judgement about a file, with what led to it. A member that is unknown is absent or empty.
 struct Verdict {
   Judgement judgement = Judgement::kNotJudged;
-  std::string kind;  ///< "record" or "journal"; empty if it is neither, or of a version that is not read.
+  std::string kind;  ///< "record" or "journal"; empty exactly if the judgement is kNotJudged.
   std::optional<std::int64_t> format_version;
   std::optional<std::int64_t> scans_present;    ///< Number of scans that could be read.
   std::optional<std::int64_t> scans_committed;  ///< Number of scans that a record says were written.

@@ -38,7 +38,8 @@ inline constexpr double kOutlierSigmas = 5.0;
 /// already.
 /// \param sigma  standard deviation of the noise of one value.
 /// \return height of the outlier, to be subtracted from the middle; nullopt if it is none. One candidate or
-/// two must explain 95 % of the misfit, or all but what noise leaves.
+/// two must explain 95 % of the misfit, or all but what noise leaves. Each of two must be at least 1.5 times
+/// as high as the largest second difference of the repaired window.
 [[nodiscard]] std::optional<double> cubic_outlier(std::span<const double, kCubicWindow> window,
                                                   double sigma) noexcept;
 

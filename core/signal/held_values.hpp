@@ -7,7 +7,8 @@
 /// The noise is taken as white on single scans, of standard deviation σ; the signal beneath it may be
 /// anything. A scan then lies in a band of width w with probability p ≤ erf(w/(2√2 σ)), as no level of the
 /// signal makes a band more likely than the level in its middle. σ is that of the quietest stretch outside
-/// the band, less a margin and the noise of rounding: noise that comes with a motor is not taken for a fault.
+/// the band (of a flat top the band of two steps, of a frozen value its stretch), less a margin and the noise
+/// of rounding: noise that comes with a motor is not taken for a fault.
 #pragma once
 
 #include <cstddef>
@@ -48,7 +49,7 @@ struct HeldValues {
 /// from a sound one.
 /// \param step  of the converter, or the smallest difference of neighbours as measured.
 /// \return nullopt if there is none; also unless the largest value and the step are positive, and unless 68
-/// consecutive scans outside the band show noise clearly above that of rounding.
+/// consecutive scans outside the band of two steps show noise clearly above that of rounding.
 [[nodiscard]] std::optional<HeldValues> flat_top(const base::LongColumn<double>& values,
                                                  const LeftOut& left_out, double step);
 
@@ -56,7 +57,8 @@ struct HeldValues {
 /// with probability N n p^(n − 1) at most, which must not exceed kFalseAlarm. Only values of at least a third
 /// of the largest count, since an unloaded cell may be quieter than a pull.
 /// \param step  as for flat_top().
-/// \return nullopt if there is none of at least 16 scans; also for the reasons that flat_top() has.
+/// \return nullopt if there is none of at least 16 scans; also for the reasons that flat_top() has, but with
+/// the noise of the scans outside the run.
 [[nodiscard]] std::optional<HeldValues> frozen_values(const base::LongColumn<double>& values,
                                                       const LeftOut& left_out, double step);
 

@@ -15,8 +15,8 @@ namespace stickslip::signal {
 
 /// Mean of a sequence of values, and its standard error. The values are taken as white noise, or as an
 /// Ornstein–Uhlenbeck process with white noise: covariance of values i and j
-/// V = (1 − w) e^(−|i−j|/τ) + w δ_ij, in units of the variance. The error is the average over w and τ,
-/// weighted by their posterior probabilities [Gelman et al., Bayesian Data Analysis, 3rd ed., 2013,
+/// V = (1 − w) e^(−|i−j|/τ) + w δ_ij, in units of the variance. The square of the error is the average over w
+/// and τ, weighted by their posterior probabilities [Gelman et al., Bayesian Data Analysis, 3rd ed., 2013,
 /// section 7.6]. White noise has four fifths of the prior, so that independent values have the textbook error
 /// √(variance/n) but for a few per cent; the error is never below that. From kMost values on, neighbours are
 /// averaged, so that memory and time are bounded. Never allocates.

@@ -83,8 +83,8 @@ struct Motion {
   double mu_s = 0.0;              ///< S ≥ mu_k
   double mu_k = 0.0;              ///< K ≥ 0
   double gravity_m_per_s2 = 0.0;  ///< > 0
-  /// Slip starts when spring and damper together reach S; false: when the spring does. The share a/g of the
-  /// belt's acceleration a is added in either case.
+  /// Slip starts when spring and damper together reach S; false: when the spring has reached S, and spring
+  /// and damper together K. The share a/g of the belt's acceleration a is added in either case.
   bool damper_counts_at_onset = false;
   PaperSettings paper;            ///< Effects that vary S and K.
   bool one_way_coupling = false;  ///< The coupling cannot push: it goes slack, without force.
@@ -114,8 +114,9 @@ struct ModeStart {
   double coefficient = 0.0;  ///< F/(m g) of the spring; of a slack coupling minus the slack times ω₀²/g.
 };
 
-/// Receives the starts of the pieces, in the order of time. The first comes when a solver is constructed or
-/// restarted. A numeric solver may tell a start that lies later than the instant it was asked for.
+/// Receives the starts of the pieces, in the order of time; with rate_and_state only those that change the
+/// mode. The first comes when a solver is constructed or restarted. A numeric solver may tell a start that
+/// lies later than the instant it was asked for.
 class MotionObserver {
  public:
   virtual ~MotionObserver() = default;

@@ -62,9 +62,10 @@ class MotionSolver {
 };
 
 /// Whether Propagator can solve this motion. It cannot with velocity_dependence or rate_and_state; with a
-/// drift of K that is exponential over belt travel, if the speed changes within a segment; and with a drift
-/// of K if a decay, its own or, over belt travel, that of the belt's speed, is nearly in resonance with the
-/// oscillator (|distance_from_resonance()| < 1e-3), which takes γ of nearly 2ω₀ or more.
+/// drift of K that is exponential over belt travel, if the speed changes within a segment (other than by
+/// halt_when_unloaded); and with a drift of K if a decay, its own or, over belt travel, that of the belt's
+/// speed, is nearly in resonance with the oscillator (|distance_from_resonance()| < 1e-3), which takes γ of
+/// nearly 2ω₀ or more.
 [[nodiscard]] bool has_closed_form(const Motion& motion) noexcept;
 
 /// Makes the solver of a motion: Propagator if it has_closed_form(), since closed forms are the fastest and

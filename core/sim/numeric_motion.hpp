@@ -27,7 +27,8 @@ class NumericMotion {
  public:
   virtual ~NumericMotion() = default;
 
-  /// Returns to scan 0, with the coupling unloaded, or slack by startup_slack_m.
+  /// Returns to scan 0, with the coupling unloaded, or slack by startup_slack_m, and the random numbers of
+  /// `seed`.
   virtual void restart(std::uint64_t seed) = 0;
 
   // The present interval, in which the force is known.
@@ -64,7 +65,7 @@ inline constexpr double kLongestPiece_s = 64.0;
 /// the cycles: error ≤ growth · (1 + T ω₀/2π) · tolerance, with the total duration T of the belt's segments,
 /// and a growth that is measured for each method (tests/numeric/numeric_solver_accuracy_test.cpp).
 struct ToleranceChoice {
-  double tolerance = 0.0;  ///< Of a coefficient in one step.
+  double tolerance = 0.0;  ///< Of a coefficient in one step; from least_tolerance to kCoarsest.
   /// Expected accuracy; larger than requested if least_tolerance sets the limit, infinite if T is.
   double accuracy = 0.0;
 

@@ -115,8 +115,8 @@ class Paper {
   [[nodiscard]] double growth(double rested_s) const noexcept {
     return ageing_ ? ageing_->growth(rested_s) : 0.0;
   }
-  /// Time, s, until a force that rises from `held` at `rate` reaches the static limit, if the contact has
-  /// rested for rested_s now.
+  /// Time, s, until a force that rises from `held` at `rate` rises through the static limit, if the contact
+  /// has rested for rested_s now. A force at the limit does not count while ageing raises the limit faster.
   /// \param held  coefficient, at most static_limit(rested_s). \param rate  > 0, 1/s.
   [[nodiscard]] double gives_way_s(double held, double rate, double rested_s) const {
     return ageing_ ? ageing_->gives_way_s(held, rate, now_.mu_s, rested_s) : (now_.mu_s - held) / rate;

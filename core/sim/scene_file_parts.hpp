@@ -22,7 +22,8 @@ inline constexpr double kFastestBelt_m_per_s = 10.0;
 /// \param scene  with one_way_coupling.
 void read_belt_effects(base::Settings scene_table, base::Settings effects, Scene& scene);
 
-/// Reads `kinetic_drift`; refuses one whose K would become negative within the scene.
+/// Reads `kinetic_drift`; refuses one whose K would become negative within the scene if no belt segment
+/// halted.
 /// \param effects  the table [effects]. \param scene  with K, belt and duration.
 void read_kinetic_drift(base::Settings effects, Scene& scene);
 

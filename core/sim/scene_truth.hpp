@@ -19,8 +19,8 @@ namespace stickslip::sim {
 /// Regime over the pull: stick-slip if each slip ended in sticking, ring-down if none did, mixed if some did;
 /// undecided if there is no slip, or only one that the end of the pull interrupts. A slip counts as
 /// interrupted unless it has lasted longer than two free periods and than any captured slip before. Sliding
-/// that follows a fast start of the belt, without giving way, counts as a slip that did not stick, if it
-/// lasts that long.
+/// that ends a stick without giving way, as at a jump of the belt's speed, counts as a slip that did not
+/// stick, if it lasts that long.
 ///
 /// Pull speed: that of the belt at the first onset; without a slip steady_pull_speed_m_per_s(), or else 0.
 /// Frequency: mean one of the onsets if there are two or more; ω/2π if there is one and the regime is
