@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -13,10 +16,12 @@
 #include "io/json_text.hpp"
 #include "io/print_text.hpp"
 #include "io/results_json.hpp"
+#include "io/table.hpp"
 #include "report/truth_table.hpp"
 #include <nlohmann/json.hpp>
 
 #include "core/analysis/skipped_corrections.hpp"
+#include "core/base/digits.hpp"
 #include "core/base/text.hpp"
 #include "core/base/wording.hpp"
 #include "core/evaluation/analyse.hpp"
@@ -38,9 +43,14 @@ struct AnalyzeOptions {
   /// Of analysis::kCorrectionNames, or "nothing" alone; empty: as each record says.
   std::vector<std::string> keep;
   TransducerOptions transducer;  ///< Each part instead of that of each record.
+  std::size_t bootstrap = 0;     ///< Drawings of the slips; 0: none.
+  std::uint64_t seed = 1;        ///< Of the drawings.
   bool effects = false;          ///< What each of them does, beside the results.
   bool json = false;
 };
+
+constexpr int kFewestDrawings = 100;  // For intervals of 95 %.
+constexpr int kMostDrawings = 1'000'000;
 
 /// The test against the characterisation, or why it could not be asked.
 nlohmann::ordered_json json_of(const std::optional<analysis::TesterCheck>& check) {
@@ -76,6 +86,43 @@ base::Result<std::optional<analysis::SkippedCorrections>> chosen_corrections(
   return std::optional{chosen};
 }
 
+nlohmann::ordered_json json_of(const analysis::Bootstrap& drawn) {
+  nlohmann::ordered_json json{{"count", drawn.settings.count},
+                              {"seed", drawn.settings.seed},
+                              {"converged", drawn.converged},
+                              {"block", drawn.block}};
+  if (!drawn.reason.empty()) json["reason"] = drawn.reason;
+  for (const analysis::BootstrapSpread& spread : drawn.spreads)
+    json[std::string{spread.name}] = {{"unit", spread.unit},
+                                      {"standard_deviation", spread.standard_deviation},
+                                      {"interval", {spread.lowest, spread.highest}}};
+  return json;
+}
+
+/// Beside the standard errors of the results. \param where  "test 1, FILE"
+std::string text_of(const analysis::Bootstrap& drawn, const analysis::TestResults& results,
+                    std::string_view where) {
+  if (!drawn.reason.empty()) return fmt::format("\n{}: no bootstrap: {}\n", where, drawn.reason);
+  std::string text =
+      fmt::format("\n{}: slips drawn again {} times in blocks of {}, seed {}; {} fits converged\n", where,
+                  drawn.settings.count, drawn.block, drawn.settings.seed, drawn.converged);
+  io::Table table{{{.heading = "", .align = io::Table::Align::kLeft},
+                   {.heading = "± stat."},
+                   {.heading = "bootstrap"},
+                   {.heading = "95 % from"},
+                   {.heading = "to"}}};
+  for (const analysis::BootstrapSpread& spread : drawn.spreads) {
+    analysis::for_each_result(results, [&](const analysis::ResultName& name, const analysis::Estimate& own) {
+      if (name.name != spread.name) return;
+      const int decimals = base::decimals_of(spread.standard_deviation, base::kUncertaintyDigits);
+      const auto cell = [decimals](double value) { return fmt::format("{:.{}f}", value, decimals); };
+      table.add({std::string{name.name}, own.standard_error ? cell(*own.standard_error) : std::string{},
+                 cell(spread.standard_deviation), cell(spread.lowest), cell(spread.highest)});
+    });
+  }
+  return text + table.text();
+}
+
 base::Result<std::string> run_analyze(const AnalyzeOptions& options) {
   const base::Result<model::Method> method = chosen_method(options.method);
   if (!method) return tl::unexpected(method.error());
@@ -105,7 +152,7 @@ base::Result<std::string> run_analyze(const AnalyzeOptions& options) {
   }
   nlohmann::ordered_json tests = nlohmann::ordered_json::array();
   std::vector<report::TableRow> rows;
-  std::string effects_below;
+  std::string below;
   for (std::size_t i = 0; i < options.files.size(); ++i) {
     const std::string& file = options.files[i];
     base::Result<record::Record> record = record::read_record_in_turn(options.files, i);
@@ -123,7 +170,8 @@ base::Result<std::string> run_analyze(const AnalyzeOptions& options) {
     if (!options.method.empty()) process.method = record::method_text(*method);
     record->header.tester.set_transducer(*transducer);
     if (*skipped) process.kept = analysis::text_of(**skipped);
-    base::Result<evaluation::TesterAnalysis> analysed = evaluation::analyse_with_tester(*record, prior);
+    base::Result<evaluation::TesterAnalysis> analysed =
+        evaluation::analyse_with_tester(*record, prior, {}, {options.bootstrap, options.seed});
     if (!analysed) {
       return tl::unexpected(
           base::Error{analysed.error().kind, fmt::format("{}: {}", file, analysed.error().message)});
@@ -142,16 +190,17 @@ base::Result<std::string> run_analyze(const AnalyzeOptions& options) {
       test.update(io::results_json(end->results, true));
       if (analysed->check || !options.tester.empty()) test["tester_check"] = json_of(analysed->check);
       if (options.effects) test["effects"] = effects_json(effects);
+      if (analysed->bootstrap) test["bootstrap"] = json_of(*analysed->bootstrap);
       tests.push_back(std::move(test));
     } else {
       const std::int64_t number = record_number.value_or(static_cast<std::int64_t>(rows.size()) + 1);
+      const std::string where = fmt::format("test {}, {}", number, base::printable(file));
+      if (options.effects) below += fmt::format("\n{}\n{}", where, effects_text(effects));
+      if (analysed->bootstrap) below += text_of(*analysed->bootstrap, end->results, where);
       rows.push_back({number, std::move(end->results), std::move(end->truth), file});
-      if (options.effects)
-        effects_below +=
-            fmt::format("\ntest {}, {}\n{}", number, base::printable(file), effects_text(effects));
     }
   }
-  if (!options.json) return report::format_table(rows) + effects_below;
+  if (!options.json) return report::format_table(rows) + below;
   using Json = nlohmann::ordered_json;
   return io::json_document(Json{{"tests", std::move(tests)}});
 }
@@ -184,6 +233,16 @@ void add_analyze(CLI::App& app, Chosen& chosen) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   add_transducer_options(*command, options->transducer);
+  CLI::Option* const bootstrap =
+      command
+          ->add_option("--bootstrap", options->bootstrap,
+                       "draw the slips again N times and fit them: how S, K and S - K scatter, beside their "
+                       "standard errors")
+          ->type_name("N")
+          ->check(CLI::Range(kFewestDrawings, kMostDrawings));
+  command->add_option("--seed", options->seed, "of the drawings; default 1")
+      ->type_name("N")
+      ->needs(bootstrap);
   command->add_flag("--effects", options->effects,
                     "S, K and S - K with all three taken care of, and with each kept, side by side");
   command->add_flag("--json", options->json,
@@ -193,6 +252,7 @@ void add_analyze(CLI::App& app, Chosen& chosen) {
       "  stickslip analyze records/*.h5                     a table, with the truth where it is known\n"
       "  stickslip analyze pull.h5 --effects                what spikes, drift and the first slip do to S - "
       "K\n"
+      "  stickslip analyze pull.h5 --bootstrap 1000         are the standard errors right?\n"
       "  stickslip analyze pull.h5 --keep spikes --keep drift --json");
   choose(*command, chosen, [options] { return run_analyze(*options); });
 }

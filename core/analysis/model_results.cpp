@@ -64,29 +64,6 @@ void take(const estimate::UniformFit& uniform, Fitted& fitted) {
   fitted.of_noise = fitted.covariance;
 }
 
-/// Slips that count in the means: not the first and none after a hold if there are others (unless the first
-/// is kept), and none whose S − K its few scans — a gap, spikes, the end of the pull — leave more uncertain
-/// than the typical S − K itself is large.
-std::vector<estimate::SlipWindow> slips_that_count(const SlipEstimates& estimates) {
-  const std::vector<estimate::SlipWindow>& all = estimates.windows;
-  std::vector<estimate::SlipWindow> windows;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const bool rested_longer =
-        i == 0 || estimates.belt.is_held_between(all[i - 1].slip.onset_s, all[i].slip.onset_s);
-    if (estimates.first_counts || !rested_longer) windows.push_back(all[i]);
-  }
-  if (all.size() < kEnoughToLeaveOutTheFirst || windows.empty()) windows = all;
-  std::vector<double> sizes;
-  sizes.reserve(windows.size());
-  for (const estimate::SlipWindow& window : windows) sizes.push_back(std::abs(window.slip.S - window.slip.K));
-  const double typical = signal::median(sizes);
-  std::vector<estimate::SlipWindow> told;
-  std::copy_if(
-      windows.begin(), windows.end(), std::back_inserter(told),
-      [&](const estimate::SlipWindow& window) { return estimates.fit.delta_mu_error(window) <= typical; });
-  return told.empty() ? std::vector<estimate::SlipWindow>{windows.begin(), windows.end()} : told;
-}
-
 Fitted gather(const SlipEstimates& estimates) {
   const estimate::SlipFit& fit = estimates.fit;
   const std::vector<estimate::SlipWindow> windows = slips_that_count(estimates);
@@ -178,6 +155,26 @@ model::Oscillator oscillator_of(const Eigen::Matrix<double, 5, 1>& p) {
 }
 
 }  // namespace
+
+std::vector<estimate::SlipWindow> slips_that_count(const SlipEstimates& estimates) {
+  const std::vector<estimate::SlipWindow>& all = estimates.windows;
+  std::vector<estimate::SlipWindow> windows;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool rested_longer =
+        i == 0 || estimates.belt.is_held_between(all[i - 1].slip.onset_s, all[i].slip.onset_s);
+    if (estimates.first_counts || !rested_longer) windows.push_back(all[i]);
+  }
+  if (all.size() < kEnoughToLeaveOutTheFirst || windows.empty()) windows = all;
+  std::vector<double> sizes;
+  sizes.reserve(windows.size());
+  for (const estimate::SlipWindow& window : windows) sizes.push_back(std::abs(window.slip.S - window.slip.K));
+  const double typical = signal::median(sizes);
+  std::vector<estimate::SlipWindow> told;
+  std::copy_if(
+      windows.begin(), windows.end(), std::back_inserter(told),
+      [&](const estimate::SlipWindow& window) { return estimates.fit.delta_mu_error(window) <= typical; });
+  return told.empty() ? std::vector<estimate::SlipWindow>{windows.begin(), windows.end()} : told;
+}
 
 namespace {
 

@@ -28,6 +28,12 @@ inline constexpr double kLargestResidualSigmas = 5.0;
 /// \param sigma  noise of one scan.
 [[nodiscard]] bool model_describes(const SlipEstimates& estimates, double sigma);
 
+/// Slips that count in the means: not the first and none after a hold if there are others (unless the first
+/// is kept), and none whose S − K its few scans — a gap, spikes, the end of the pull — leave more uncertain
+/// than the typical S − K itself is large.
+/// \param estimates  converged.
+[[nodiscard]] std::vector<estimate::SlipWindow> slips_that_count(const SlipEstimates& estimates);
+
 /// Parts of a slip and the stick before it, in the order of time.
 enum class SlipPart { kRise, kPeak, kFall, kTrough };
 inline constexpr std::array<std::string_view, 4> kSlipPartNames{"rise", "peak", "fall", "trough"};

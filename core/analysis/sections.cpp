@@ -271,8 +271,11 @@ TestEstimates estimate_in_sections(const estimate::Trace& trace, const base::Lon
     for (std::size_t i = 0; i < std::min(count, ratios.size()); ++i) {
       whole.log_likelihood_ratios.push_back(ratios[i]);
     }
+    if (settings.keep_section && count == slips.size() && estimates.fit.converged)
+      whole.section = std::make_shared<const SlipEstimates>(estimates);
     first += count;
   }
+  whole.prior = prior;
   whole.results = results.mean();
   whole.tester = testers.mean();
   const Estimate& delta_mu = whole.results.delta_mu;

@@ -6,12 +6,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "core/analysis/characterisation.hpp"
 #include "core/analysis/model_results.hpp"
 #include "core/analysis/results.hpp"
+#include "core/analysis/slip_estimator.hpp"
 #include "core/base/long_column.hpp"
 #include "core/detect/cycle.hpp"
 #include "core/detect/fall_finder.hpp"
@@ -56,6 +58,10 @@ struct TestEstimates {
   /// The tester's parameters by the fits of all sections, the prior included; nullopt if the fit of a section
   /// did not converge.
   std::optional<TesterEstimate> tester;
+  /// The estimates of a test of one section, and the prior with which it was fitted; null of several, and
+  /// unless settings.keep_section.
+  std::shared_ptr<const SlipEstimates> section;
+  estimate::SharedPrior prior;
 };
 
 /// Settings of estimate_in_sections().
@@ -65,6 +71,7 @@ struct SectionSettings {
   std::size_t most = kMostSlipsTogether;
   bool first_counts = false;  ///< Means include the first slip of the test and those after a hold.
   bool keep_fitted = false;   ///< Fills TestEstimates::fitted.
+  bool keep_section = false;  ///< Fills TestEstimates::section.
   bool on_threads = false;    ///< Fits the next section beside this one; the estimates are the same.
 };
 

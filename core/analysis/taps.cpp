@@ -24,7 +24,8 @@ constexpr double kTapSigmas = 12.0;
 constexpr std::size_t kQuietScans = 32;
 /// Fewest readings of a fit: as many for the residuals as parameters, and more.
 constexpr std::size_t kFewestScans = 12;
-/// Most of them; later ones hold no oscillation, or hold it better than anybody needs.
+/// Twice the most readings after the largest one that count: more would tell the oscillation no better than
+/// anybody needs.
 constexpr std::size_t kMostScans = 2048;
 /// Standard errors of the variance of the residuals up to which they count as noise. Noise exceeds it in one
 /// fit of six, whose successor begins a reading later; with a larger one, what still swings beside the cell
@@ -172,10 +173,11 @@ std::vector<Knock> knocks_in(std::span<const double> values, double level, doubl
     knock.last = k;
     if (off > std::abs(values[knock.peak] - level)) knock.peak = k;
   }
-  // As long again as it is seen: there is the rest of it, and the level.
-  for (Knock& knock : knocks)
-    knock.end =
-        std::min({knock.end, knock.last + (knock.last - knock.peak) + kQuietScans, knock.peak + kMostScans});
+  for (Knock& knock : knocks) {
+    knock.last = std::min(knock.last, knock.peak + kMostScans / 2);
+    // As long again as it is seen: there is the rest of it, and the level.
+    knock.end = std::min(knock.end, knock.last + (knock.last - knock.peak) + kQuietScans);
+  }
   return knocks;
 }
 

@@ -373,6 +373,7 @@ TestResults TestAnalysis::finish() {
                              "the load cell and filter that are stated are not taken off the trace: S and K "
                              "are as read"));
     }
+    if (settings_.bootstrap.count > 0) bootstrap_ = bootstrap_of(trace, sigma, estimates);
     results.mu_slope = mu_slope(trace, slips, sigma, estimates);
     if (fits_whole_test() && estimates.model_describes) speed_results(trace, estimates, results);
     if (verdict.transition_slip) {
@@ -492,6 +493,7 @@ SectionSettings TestAnalysis::section_settings() const {
   return {.scratch = settings_.scratch_folder,
           .first_counts = settings_.skipped.first_slip,
           .keep_fitted = !settings_.tester.transducer.is_ideal(),
+          .keep_section = settings_.bootstrap.count > 0,
           .on_threads = !settings_.live};
 }
 
@@ -613,6 +615,19 @@ Estimate TestAnalysis::mu_slope(const estimate::Trace& trace, const base::LongCo
   return Estimate::none(
       fmt::format("the {} parts of the test differ: {:.2g}, {:.2g} and {:.2g} s/m, probability {:.1g}",
                   kParts, *parts[0].value, *parts[1].value, *parts[2].value, probability));
+}
+
+Bootstrap TestAnalysis::bootstrap_of(const estimate::Trace& trace, double sigma,
+                                     const TestEstimates& estimates) const {
+  if (fits_whole_test() && estimates.model_describes && estimates.section)
+    return bootstrap_slips(trace, *estimates.section, sigma, estimates.prior, settings_.bootstrap);
+  Bootstrap none;
+  none.settings = settings_.bootstrap;
+  none.reason = !estimates.rung_reason.empty() && !estimates.model_describes
+                    ? "no fit describes the test: " + estimates.rung_reason
+                : fits_whole_test() ? fmt::format("the test has more than {} slips", kMostSlipsTogether)
+                                    : "turning points are no fit: --estimator fit";
+  return none;
 }
 
 void TestAnalysis::speed_results(const estimate::Trace& trace, const TestEstimates& estimates,

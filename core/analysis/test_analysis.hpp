@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/analysis/bootstrap.hpp"
 #include "core/analysis/characterisation.hpp"
 #include "core/analysis/results.hpp"
 #include "core/analysis/sections.hpp"
@@ -53,6 +54,7 @@ struct AnalysisSettings {
   /// Whether add() detects slips. If not, finish() does, on a thread of its own beside the fits: for scans
   /// that are all there already.
   bool live = true;
+  BootstrapSettings bootstrap;  ///< Of the results, at the end.
   /// One A/D step of the measured pull speed, ≥ 0; nullopt: no speed channel, speed() is not called.
   std::optional<double> speed_step_m_per_s;
 };
@@ -106,6 +108,9 @@ class TestAnalysis {
   /// After finish(): check against settings.prior.coupling; nullopt without it, without tester(), or if the
   /// fit with that prior did not converge.
   [[nodiscard]] const std::optional<TesterCheck>& tester_check() const noexcept { return tester_check_; }
+  /// After finish(): how the results scatter if the slips are drawn again; nullopt unless
+  /// settings.bootstrap.count > 0.
+  [[nodiscard]] const std::optional<Bootstrap>& bootstrap() const noexcept { return bootstrap_; }
   /// After finish(): scans that were found to be spikes.
   [[nodiscard]] const std::vector<base::ScanIndex>& spikes() const noexcept { return spikes_; }
   /// After finish(): the measured coefficient of each spike.
@@ -153,6 +158,8 @@ class TestAnalysis {
   /// μ′ of the paper over that of the characterisation, from the damping that the test alone has.
   [[nodiscard]] Estimate mu_slope(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
                                   double sigma, const TestEstimates& estimates) const;
+  [[nodiscard]] Bootstrap bootstrap_of(const estimate::Trace& trace, double sigma,
+                                       const TestEstimates& estimates) const;
   /// Fills pull_speed_measured, from the stick rate and ω₀, or tells why it has no value; adds the findings
   /// of tester_check_, or kPullSpeed without it. If the sled may never have stuck, S and S − K become absent,
   /// too. \param results  with K already.
@@ -201,6 +208,7 @@ class TestAnalysis {
   base::LongColumn<detect::Cycle> cycles_;
   std::optional<TesterEstimate> tester_;
   std::optional<TesterCheck> tester_check_;
+  std::optional<Bootstrap> bootstrap_;
   bool transducer_is_off_ = false;  ///< What a stated transducer adds was taken off the trace.
   std::vector<base::ScanIndex> spikes_;
   std::vector<double> spike_coefficients_;

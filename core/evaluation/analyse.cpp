@@ -49,7 +49,8 @@ RecordAnalysis::RecordAnalysis(daq::Calibration calibration, std::optional<daq::
 base::Result<RecordAnalysis> RecordAnalysis::make(const record::RecordHeader& header,
                                                   const std::filesystem::path& scratch_folder,
                                                   const estimate::SharedPrior& prior,
-                                                  std::vector<daq::Gap> gaps) {
+                                                  std::vector<daq::Gap> gaps,
+                                                  const analysis::BootstrapSettings& bootstrap) {
   if (header.board.quantity == daq::RawQuantity::kCounts && !header.load_cell) {
     return base::usage_error("the record has counts but no load cell, so no forces");
   }
@@ -77,6 +78,7 @@ base::Result<RecordAnalysis> RecordAnalysis::make(const record::RecordHeader& he
     analysis::AnalysisSettings settings = settings_of(header, calibration, *method, *estimator, *skipped);
     settings.scratch_folder = scratch_folder;
     settings.live = false;
+    settings.bootstrap = bootstrap;
     settings.prior = prior.empty() ? recorded : prior;
     std::optional<daq::SecondChannel> speed;
     if (const auto& second = header.board.second;
@@ -143,9 +145,10 @@ namespace {
 
 base::Result<TesterAnalysis> analyse_scans(const record::Record& record, const record::ScanSource& scans,
                                            const estimate::SharedPrior& prior,
-                                           const std::filesystem::path& scratch_folder) {
+                                           const std::filesystem::path& scratch_folder,
+                                           const analysis::BootstrapSettings& bootstrap = {}) {
   base::Result<RecordAnalysis> analysis =
-      RecordAnalysis::make(record.header, scratch_folder, prior, record.gaps);
+      RecordAnalysis::make(record.header, scratch_folder, prior, record.gaps, bootstrap);
   if (!analysis) return tl::unexpected(analysis.error());
   base::LongColumn<std::int32_t> codes{scans.has_second() ? scratch_folder : std::filesystem::path{}};
   if (scans.has_second()) {
@@ -166,6 +169,7 @@ base::Result<TesterAnalysis> analyse_scans(const record::Record& record, const r
   analysis->finish(result.end, record.anchors, record.gaps);
   result.tester = analysis->tester();
   result.check = analysis->tester_check();
+  result.bootstrap = analysis->bootstrap();
   return result;
 }
 
@@ -173,8 +177,9 @@ base::Result<TesterAnalysis> analyse_scans(const record::Record& record, const r
 
 base::Result<TesterAnalysis> analyse_with_tester(const record::Record& record,
                                                  const estimate::SharedPrior& prior,
-                                                 const std::filesystem::path& scratch_folder) {
-  return analyse_scans(record, record::RecordScans{record}, prior, scratch_folder);
+                                                 const std::filesystem::path& scratch_folder,
+                                                 const analysis::BootstrapSettings& bootstrap) {
+  return analyse_scans(record, record::RecordScans{record}, prior, scratch_folder, bootstrap);
 }
 
 base::Result<record::EndRecord> analyse(const record::Record& record,

@@ -32,7 +32,8 @@ class RecordAnalysis {
   [[nodiscard]] static base::Result<RecordAnalysis> make(const record::RecordHeader& header,
                                                          const std::filesystem::path& scratch_folder = {},
                                                          const estimate::SharedPrior& prior = {},
-                                                         std::vector<daq::Gap> gaps = {});
+                                                         std::vector<daq::Gap> gaps = {},
+                                                         const analysis::BootstrapSettings& bootstrap = {});
 
   // Both may throw std::system_error where there is a scratch folder.
 
@@ -47,12 +48,15 @@ class RecordAnalysis {
   void finish(record::EndRecord& end, std::span<const daq::ClockAnchor> anchors = {},
               std::span<const daq::Gap> gaps = {});
 
-  /// After finish(), as TestAnalysis.
+  // After finish(), as TestAnalysis.
   [[nodiscard]] const std::optional<analysis::TesterEstimate>& tester() const noexcept {
     return analysis_.tester();
   }
   [[nodiscard]] const std::optional<analysis::TesterCheck>& tester_check() const noexcept {
     return analysis_.tester_check();
+  }
+  [[nodiscard]] const std::optional<analysis::Bootstrap>& bootstrap() const noexcept {
+    return analysis_.bootstrap();
   }
 
  private:
@@ -83,10 +87,11 @@ struct TesterAnalysis {
   record::EndRecord end;                           ///< As analyse().
   std::optional<analysis::TesterEstimate> tester;  ///< TestAnalysis::tester()
   std::optional<analysis::TesterCheck> check;      ///< TestAnalysis::tester_check()
+  std::optional<analysis::Bootstrap> bootstrap;    ///< TestAnalysis::bootstrap()
 };
 /// \param prior  as RecordAnalysis::make(). Errors and exceptions as analyse().
 [[nodiscard]] base::Result<TesterAnalysis> analyse_with_tester(
     const record::Record& record, const estimate::SharedPrior& prior,
-    const std::filesystem::path& scratch_folder = {});
+    const std::filesystem::path& scratch_folder = {}, const analysis::BootstrapSettings& bootstrap = {});
 
 }  // namespace stickslip::evaluation

@@ -151,5 +151,16 @@ TEST(Taps, ThatPushInsteadAreRefusedWithTheirTimes) {
   EXPECT_NE(found.refused.front().why.find("not one decaying oscillation"), std::string::npos);
 }
 
+TEST(Taps, WeightThatStaysOnTheCellIsNone) {
+  std::mt19937_64 random{5};
+  std::normal_distribution<double> noise{0.02, 0.001};
+  std::vector<double> loaded(12'000);
+  for (std::size_t k = 0; k < loaded.size(); ++k) loaded[k] = noise(random) + (k < 7000 ? 0.0 : 1.0);
+  const Taps found = find_taps(loaded, 2000.0);
+  EXPECT_TRUE(found.taps.empty());
+  ASSERT_EQ(found.refused.size(), 1U);
+  EXPECT_GE(found.refused.front().at_s, 3.5);
+}
+
 }  // namespace
 }  // namespace stickslip::analysis

@@ -1,0 +1,134 @@
+#include "core/analysis/bootstrap.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <random>
+#include <utility>
+
+#include "core/analysis/model_results.hpp"
+#include "core/signal/statistics.hpp"
+
+namespace stickslip::analysis {
+namespace {
+
+constexpr std::size_t kFewestSlips = 8;
+constexpr double kFewestConverged = 0.9;
+constexpr double kTail = 0.025;
+/// Change of the cost below which a fit has settled: all parameters together then move by 0.05 of a standard
+/// error, which adds 0.1 % to their scatter.
+constexpr double kSettled = 1e-3;
+
+/// What a drawing gives: S, K, S − K, ω, γ/2ω.
+using Drawn = std::array<double, 5>;
+constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kNames{
+    {{"mu_s", "1"}, {"mu_k", "1"}, {"delta_mu", "1"}, {"omega", "rad/s"}, {"gamma_over_2omega", "1"}}};
+
+Drawn results_of(double S, double K, const model::SharedParameters& shared) {
+  return {S, K, S - K, shared.omega, shared.oscillator().gamma_over_2omega()};
+}
+
+/// Numbers of the slips of a drawing.
+std::vector<std::size_t> draw(std::size_t slips, std::size_t block, std::mt19937_64& random) {
+  std::uniform_int_distribution<std::size_t> begin{0, slips - 1};
+  std::vector<std::size_t> drawn;
+  while (drawn.size() < slips) {
+    const std::size_t first = begin(random);
+    for (std::size_t i = 0; i < block && drawn.size() < slips; ++i) drawn.push_back((first + i) % slips);
+  }
+  return drawn;
+}
+
+/// Each slip by itself.
+std::optional<Drawn> fit_each(const estimate::Trace& trace, const SlipEstimates& estimates,
+                              const std::vector<estimate::SlipWindow>& slips,
+                              const std::vector<std::size_t>& drawn, double sigma,
+                              const estimate::SharedPrior& prior) {
+  std::vector<estimate::SlipWindow> windows;
+  for (const std::size_t slip : drawn) windows.push_back(slips[slip]);
+  const estimate::SlipFit fit =
+      estimate::fit_slips(trace, windows, estimates.fit.shared, sigma, prior, kSettled);
+  if (!fit.converged) return std::nullopt;
+  signal::RunningMean S;
+  signal::RunningMean K;
+  for (const estimate::SlipWindow& window : windows) {
+    S.add(window.slip.S);
+    K.add(window.slip.K);
+  }
+  return results_of(S.mean, K.mean, fit.shared);
+}
+
+/// One S and K for all: the scans of each slip drawn, moved by whole periods to where it is put.
+std::optional<Drawn> fit_all(const estimate::Trace& trace, const estimate::UniformFit& uniform,
+                             const model::UniformTrajectory& course,
+                             const std::vector<estimate::SlipWindow>& slips,
+                             const std::vector<std::size_t>& drawn, double sigma,
+                             const estimate::SharedPrior& prior) {
+  estimate::Trace moved{{}, {}, {}, trace.drift, trace.belt, {}, 0.0};
+  for (std::size_t place = 0; place < drawn.size(); ++place) {
+    const estimate::SlipWindow& from = slips[drawn[place]];
+    const double cycles = std::round((slips[place].slip.onset_s - from.slip.onset_s) / course.period_s());
+    const double later_s = cycles * course.period_s();
+    for (std::size_t k = from.first; k < from.end; ++k) {
+      moved.time_s.push_back(trace.time_s[k] + later_s);
+      // Without the drift where it was, with that where it is put.
+      moved.value.push_back(trace.level(k) + trace.drift.at(trace.time_s[k] + later_s));
+      moved.usable.push_back(trace.usable[k]);
+    }
+  }
+  const estimate::UniformFit fit =
+      estimate::fit_uniform(moved, 0, moved.size(), uniform.parameters, sigma, prior);
+  if (!fit.converged) return std::nullopt;
+  return results_of(fit.parameters.slip.S, fit.parameters.slip.K, fit.parameters.shared);
+}
+
+BootstrapSpread spread_of(const std::pair<std::string_view, std::string_view>& name,
+                          std::vector<double> values) {
+  std::ranges::sort(values);
+  signal::RunningVariance variance;
+  for (const double value : values) variance.add(value);
+  const auto at = [&](double share) {
+    return values[static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)))];
+  };
+  return {name.first, name.second, std::sqrt(variance.variance()), at(kTail), at(1.0 - kTail)};
+}
+
+}  // namespace
+
+Bootstrap bootstrap_slips(const estimate::Trace& trace, const SlipEstimates& estimates, double sigma,
+                          const estimate::SharedPrior& prior, const BootstrapSettings& settings) {
+  Bootstrap result;
+  result.settings = settings;
+  const auto none = [&result](std::string why) {
+    result.reason = std::move(why);
+    return result;
+  };
+  if (!trace.belt.is_constant()) return none("the pull speed changes");
+  const std::vector<estimate::SlipWindow> slips = slips_that_count(estimates);
+  if (slips.size() < kFewestSlips)
+    return none(fmt::format("{} slips count, {} are needed", slips.size(), kFewestSlips));
+  const auto course = estimates.uniform ? model::UniformTrajectory::make(estimates.uniform->parameters)
+                                        : std::optional<model::UniformTrajectory>{};
+  result.block = static_cast<std::size_t>(std::lround(std::cbrt(static_cast<double>(slips.size()))));
+  std::mt19937_64 random{settings.seed};
+  std::array<std::vector<double>, kNames.size()> values;
+  for (std::size_t i = 0; i < settings.count; ++i) {
+    const std::vector<std::size_t> drawn = draw(slips.size(), result.block, random);
+    const std::optional<Drawn> found =
+        course ? fit_all(trace, *estimates.uniform, *course, slips, drawn, sigma, prior)
+               : fit_each(trace, estimates, slips, drawn, sigma, prior);
+    if (!found) continue;
+    ++result.converged;
+    for (std::size_t j = 0; j < found->size(); ++j) values[j].push_back((*found)[j]);
+  }
+  if (static_cast<double>(result.converged) < kFewestConverged * static_cast<double>(settings.count))
+    return none(fmt::format("{} of {} fits converged", result.converged, settings.count));
+  for (std::size_t j = 0; j < values.size(); ++j)
+    result.spreads.push_back(spread_of(kNames[j], std::move(values[j])));
+  return result;
+}
+
+}  // namespace stickslip::analysis
