@@ -47,7 +47,7 @@ Drawn analysed(const sim::Scene& scene, std::uint64_t seed, const BootstrapSetti
 
 sim::Scene scene(bool scattered) {
   sim::Scene scene = test::ScatterTrials::scene_at(8.0);
-  if (!scattered) scene.effects.scatter.reset();
+  if (!scattered) scene.paper.scatter.reset();
   return scene;
 }
 
@@ -66,7 +66,6 @@ TEST(Bootstrap, ScattersAsTheResultsAreOff) {
       EXPECT_LT(delta_mu.lowest, *drawn.results.delta_mu.value);
       EXPECT_GT(delta_mu.highest, *drawn.results.delta_mu.value);
     }
-    std::printf("%f\n", square);
     // Of some twenty slips a standard deviation is known to 16 %.
     EXPECT_LT(square, test::highest_mean_square(kTests) * 1.2);
     EXPECT_GT(square, test::lowest_mean_square(kTests) / 1.2);
