@@ -248,6 +248,25 @@ TEST(Verify, ScansAndClocksThatCannotBeAreDamage) {
   expect_damage("/entry/events/scan", -1, "scan -1 lies outside of 0 to");
 }
 
+TEST(Verify, TextsOfVariableLengthAreNotReadWhateverTheirLayout) {
+  for (const bool is_chunked : {false, true}) {
+    const Verdict verdict = after([&](hid_t file) {
+      const hid_t type = H5Tcopy(H5T_C_S1);
+      H5Tset_size(type, H5T_VARIABLE);
+      const hsize_t rows = 2;
+      const hid_t space = H5Screate_simple(1, &rows, nullptr);
+      const hid_t layout = H5Pcreate(H5P_DATASET_CREATE);
+      if (is_chunked) H5Pset_chunk(layout, 1, &rows);
+      H5Dclose(H5Dcreate2(file, "/entry/remarks", type, space, H5P_DEFAULT, layout, H5P_DEFAULT));
+      H5Pclose(layout);
+      H5Sclose(space);
+      H5Tclose(type);
+    });
+    EXPECT_EQ(findings_of(verdict),
+              "damage file: is not as it was published: process/file_sha256 does not match\n");
+  }
+}
+
 TEST(Verify, AnOlderRecordWithoutSealIsComplete) {
   const Verdict verdict = after([](hid_t file) {
     H5Ldelete(file, "/entry/process/file_sha256", H5P_DEFAULT);
