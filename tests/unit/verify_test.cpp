@@ -276,15 +276,17 @@ TEST(Verify, AnOlderRecordWithoutSealIsComplete) {
   EXPECT_THAT(findings_of(verdict), HasSubstr("note file: was made before records had a checksum"));
 }
 
-TEST(Verify, ANewerVersionIsRefusedByName) {
-  const Verdict verdict = after([](hid_t file) {
-    const hid_t attribute = H5Aopen(file, "format_version", H5P_DEFAULT);
-    const std::int64_t newer = 999;
-    H5Awrite(attribute, H5T_NATIVE_INT64, &newer);
-    H5Aclose(attribute);
-  });
-  EXPECT_EQ(verdict.judgement, Judgement::kNotJudged);
-  EXPECT_THAT(findings_of(verdict), HasSubstr("format_version: is 999, this program reads up to"));
+TEST(Verify, AVersionThatIsNotReadIsRefusedByName) {
+  for (const std::int64_t version : {999, 0, -1}) {
+    const Verdict verdict = after([&](hid_t file) {
+      const hid_t attribute = H5Aopen(file, "format_version", H5P_DEFAULT);
+      H5Awrite(attribute, H5T_NATIVE_INT64, &version);
+      H5Aclose(attribute);
+    });
+    EXPECT_EQ(verdict.judgement, Judgement::kNotJudged) << version;
+    EXPECT_EQ(findings_of(verdict),
+              fmt::format("note format_version: {}\n", record::version_refusal(version)));
+  }
 }
 
 // ---- journals -----------------------------------------------------------------------------
