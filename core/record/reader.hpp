@@ -21,7 +21,7 @@ namespace stickslip::record {
 /// truncated or, as far as HDF5 notices, damaged, has data of other types, shapes or ranges, lacks the scan
 /// rate or the calibration of its counts (the load cell's or the board's polynomial), or has raw values that
 /// do not match their checksum; kBusy if a program is writing it; kNoPermission; kFailure if it cannot be
-/// read.
+/// read or memory is exhausted.
 [[nodiscard]] base::Result<Record> read_record(const std::filesystem::path& path,
                                                const FileCalls& calls = system_calls());
 
