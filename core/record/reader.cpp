@@ -180,6 +180,12 @@ base::Result<void> verify_record(const std::filesystem::path& path, const Record
   try {
     verify(*given, path, record, scans);
     return {};
+  } catch (const HdfError& error) {
+    return tl::unexpected(why_not(*given, path, error));
+  } catch (const std::runtime_error& error) {
+    // Of the source: nothing is known against the file.
+    return base::failure("{}: cannot be compared with its scans now: {}: try again", path.string(),
+                         base::reason_of(error));
   } catch (const std::exception& error) {
     return tl::unexpected(why_not(*given, path, error));
   }
