@@ -379,7 +379,22 @@ TEST_F(FileSystem, TheProbeRefusesAFolderInWhichNoRecordCanBe) {
   disk_.fsync_error = EINVAL;
   EXPECT_EQ(told(probe_folder(folder_.path(), disk_)),
             "refused: files in it cannot be synced: Invalid argument");
+  disk_.fsync_error = 0;
+  disk_.open_error = EACCES;  // Mode -wx.
+  EXPECT_EQ(told(probe_folder(folder_.path(), disk_)),
+            "refused: cannot be opened for reading, which its sync needs: Permission denied");
   EXPECT_EQ(names(), std::vector<std::string>{"a.h5"});
+}
+
+TEST_F(FileSystem, TheProbeToleratesAFullDisk) {
+  for (const int error : {ENOSPC, EDQUOT}) {
+    disk_.create_error = error;
+    EXPECT_EQ(told(probe_folder(folder_.path(), disk_)), "");
+    disk_.create_error = 0;
+    disk_.fsync_error = disk_.folder_fsync_error = error;
+    EXPECT_EQ(told(probe_folder(folder_.path(), disk_)), "");
+    disk_.fsync_error = disk_.folder_fsync_error = 0;
+  }
 }
 
 TEST_F(FileSystem, TheProbeRemovesWhatAKillLeftAndNotThatOfAnother) {
