@@ -506,6 +506,8 @@ TEST(LawTests, ATestThatChangesItsSpeedCountsByItsRests) {
   EXPECT_THAT(tests_for_law(std::vector{test}).left_out[0].reason,
               testing::StartsWith("the pull speed changes"));
   test.rests = {{0.001, 0.1, 0.38, 1e-4, 0.0, 0.30, 2e-4, false}};
+  EXPECT_EQ(tests_for_law(std::vector{test}).tests.size(), 1U);  // Turning points tell no Q.
+  test.rests = {{0.001, 0.1, 0.38, 1e-4, 0.0, 0.30, 2e-4, false}};
   test.speed_changes = false;
   test.results.Q = analysis::Estimate::of(0.2);
   EXPECT_EQ(tests_for_law(std::vector{test}).tests.size(), 0U);  // One speed, and no pull speed.
