@@ -345,6 +345,12 @@ TEST(FrictionLaw, AsksForALongerHoldWhereHoldsAreMade) {
   EXPECT_TRUE(next->tells_ageing);
   EXPECT_EQ(next->hold_s, kLongestHold_s);
   EXPECT_NEAR(next->pull_speed_m_per_s, 3.0 * kInPerMin, 1e-12);
+  // A hold can be made where no pull of the range sticks.
+  const auto only_hold =
+      next_pull(find_law(tests), tests, {20.0 * kInPerMin, 50.0 * kInPerMin}, 6.0 * kInPerMin);
+  ASSERT_TRUE(only_hold);
+  EXPECT_TRUE(only_hold->tells_ageing);
+  EXPECT_EQ(only_hold->hold_s, kLongestHold_s);
 }
 
 /// Four slow pulls, each on its sheet, and a sheet with slips at 1 in/min and after four holds, of a
