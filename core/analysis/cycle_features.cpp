@@ -250,7 +250,8 @@ void feature_results(const estimate::Trace& trace, std::span<const detect::Fall>
   if (!results.delta_mu.value || !(*results.delta_mu.value > 0.0)) {
     return no_feature_results("S - K is not positive", results);
   }
-  if (!(shared.gamma >= 0.0)) return no_feature_results("the damping found is not positive", results);
+  if (!(shared.gamma >= 0.0))
+    return no_feature_results(fmt::format("the damping found, {:.3g}, is negative", shared.gamma), results);
 
   Features mean = Features::Zero();
   for (const Features& cycle : cycles) mean += cycle / static_cast<double>(cycles.size());

@@ -449,7 +449,10 @@ void escape_results(const SlipEstimates& estimates, TestResults& results) {
   if (estimates.belt.is_constant()) return none("no course of the pull speed is known");
   if (!(estimates.fit.shared.gamma > 0.0)) return none("the damping found is not positive");
   const std::optional<double> scatter = delta_mu_scatter(estimates);
-  if (!scatter) return none("fewer than three slips to compare");
+  if (!scatter) {
+    return none(estimates.windows.size() < 3 ? "fewer than three slips to compare"
+                                             : "the mean S - K is not positive");
+  }
   const EscapeSpeeds speeds = escape_speeds(escape_trials(estimates), *scatter);
   results.escape_speed = speeds.first_escape;
   results.escape_speed_corrected = speeds.of_mean_paper;

@@ -6,7 +6,9 @@ namespace stickslip::analysis {
 namespace {
 
 /// Mean over all of sum(test)/count(test), with the error of a ratio of sums over the tests that have some.
-Estimate ratio(std::span<const SlipSums> tests, double SlipSums::*sum, double SlipSums::*count) {
+/// \param absence  reason if none has.
+Estimate ratio(std::span<const SlipSums> tests, double SlipSums::*sum, double SlipSums::*count,
+               const char* absence) {
   double all_sum = 0.0;
   double all_count = 0.0;
   double n = 0.0;
@@ -15,7 +17,7 @@ Estimate ratio(std::span<const SlipSums> tests, double SlipSums::*sum, double Sl
     all_count += test.*count;
     if (test.*count > 0.0) n += 1.0;
   }
-  if (!(all_count > 0.0)) return Estimate::none("no slip after the first with an S - K");
+  if (!(all_count > 0.0)) return Estimate::none(absence);
   const double mean = all_sum / all_count;
   if (n < 2.0) return Estimate::of(mean);
   double squares = 0.0;
@@ -27,8 +29,9 @@ Estimate ratio(std::span<const SlipSums> tests, double SlipSums::*sum, double Sl
 
 PooledDeltaMu pool_slips(std::span<const SlipSums> tests) {
   PooledDeltaMu pooled;
-  pooled.mean = ratio(tests, &SlipSums::sum, &SlipSums::count);
-  pooled.captured_mean = ratio(tests, &SlipSums::captured_sum, &SlipSums::captured_count);
+  pooled.mean = ratio(tests, &SlipSums::sum, &SlipSums::count, "no slip after the first with an S - K");
+  pooled.captured_mean = ratio(tests, &SlipSums::captured_sum, &SlipSums::captured_count,
+                               "no captured slip after the first with an S - K");
   double n = 0.0;
   double squares = 0.0;
   for (const SlipSums& test : tests) {

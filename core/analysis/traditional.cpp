@@ -18,11 +18,15 @@ constexpr std::ptrdiff_t kFirstScans = 5;
 /// Mean of the usable scans in [first, end) but those during which the belt stood still, without large sums.
 Estimate mean_of(const estimate::Trace& trace, std::size_t first, std::size_t end) {
   signal::RunningMean mean;
+  bool any_usable = false;
   for (std::size_t k = first; k < end; ++k) {
-    if (trace.usable[k] != 0 && trace.belt.relative(trace.time_s[k]) != 0.0) mean.add(trace.value[k]);
+    if (trace.usable[k] == 0) continue;
+    any_usable = true;
+    if (trace.belt.relative(trace.time_s[k]) != 0.0) mean.add(trace.value[k]);
   }
-  return mean.count > 0.0 ? Estimate::of(mean.mean)
-                          : Estimate::none("the belt stood still in the whole window");
+  if (mean.count > 0.0) return Estimate::of(mean.mean);
+  return Estimate::none(any_usable ? "the belt stood still in the whole window"
+                                   : "no scan of the window is usable");
 }
 
 /// Scans between the first and the last at or above half the largest: what is before is loading, what

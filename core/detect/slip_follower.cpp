@@ -218,7 +218,8 @@ bool SlipFollower::judge(double now_s, double sigma, bool last) noexcept {
   // At the next slip the sign decides; a sled that sticks goes on sticking as long as the scans tell nothing.
   if (!now_.evidence.known) return false;
   const double told = std::log(kDecisiveLikelihoodRatio);
-  if (now_.evidence.log_likelihood_ratio < 0.0 && now_.evidence.log_likelihood_ratio > -told) return false;
+  if (!(now_.evidence.log_likelihood_ratio > 0.0) && !(now_.evidence.log_likelihood_ratio <= -told))
+    return false;  // NaN, too.
   decide(now_.evidence.log_likelihood_ratio, now_s);
   if (std::abs(std::log(now_.shared.r / knowledge_.best().r)) > kStickRateChange &&
       now_.shared.r == now_.rise_slope)

@@ -20,7 +20,8 @@ constexpr double kLeastError = 1e-6;
 bool counts_by_rests(const MeasuredTest& test) {
   const bool held = std::any_of(test.rests.begin(), test.rests.end(),
                                 [](const analysis::RestGroup& group) { return group.held; });
-  return held || (!test.rests.empty() && test.results.Q.reason == analysis::kSpeedChanges);
+  const bool changes = test.speed_changes || test.results.Q.reason == analysis::kSpeedChanges;
+  return held || (changes && !test.rests.empty());
 }
 
 /// Why the test counts for nothing; empty: it counts.

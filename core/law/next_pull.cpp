@@ -45,7 +45,6 @@ std::optional<NextPull> best_pull(const Dependence& asked, bool ageing, std::spa
                                   const SpeedRange& range, double highest_m_per_s) {
   if (asked.verdict != Verdict::kCannotTell || asked.systematic_vetoes || asked.points.empty())
     return std::nullopt;
-  if (!(highest_m_per_s >= range.from_m_per_s)) return std::nullopt;
   const double length = ageing ? log_stick_length(tests) : 0.0;
   const auto place = [&](double v) {
     for (std::size_t i = 0; i < asked.points.size(); ++i) {
@@ -60,7 +59,7 @@ std::optional<NextPull> best_pull(const Dependence& asked, bool ageing, std::spa
   const double variance = between_variance(asked);
   NextPull best;
   best.tells_ageing = ageing;
-  for (int i = 0; i < kCandidates; ++i) {
+  for (int i = 0; i < kCandidates && highest_m_per_s >= range.from_m_per_s; ++i) {
     const double part = static_cast<double>(i) / (kCandidates - 1);
     const double v = range.from_m_per_s * std::pow(highest_m_per_s / range.from_m_per_s, part);
     points.back().x = place(v);

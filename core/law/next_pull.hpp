@@ -37,8 +37,8 @@ inline constexpr double kLongestHold_s = 100.0;
 /// the first of these, whatever the range.
 /// \param found  of these tests.
 /// \param highest_sticking_m_per_s  above it the sled does not stick again, so that S says nothing; pulls
-/// about S without a hold are at most 0.8 of it. If the whole range lies above that, nothing is asked about
-/// S, not even with a hold. Absent: unknown, no limit.
+/// about S without a hold are at most 0.8 of it. If the whole range lies above that, S is asked about with a
+/// hold only. Absent: unknown, no limit.
 /// \return nullopt if there is nothing to ask about, if slope_that_matters is 0, if no pull in the range
 /// would tell anything, and where the tests show a direct effect of rate-and-state friction
 /// (!RateAndState::may_have_none).

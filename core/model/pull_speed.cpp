@@ -33,11 +33,11 @@ PullSpeed::PullSpeed(std::vector<SpeedPoint> points) : points_(std::move(points)
   double travel_m = 0.0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const SpeedPoint& point = points_[i];
-    largest_m_per_s_ = std::max(largest_m_per_s_, point.speed_m_per_s);
     const bool last = i + 1 == points_.size();
     const double length_s = last ? kForEver : points_[i + 1].at_s - point.at_s;
     if (!(length_s > 0.0)) continue;
     const double end_speed_m_per_s = last ? point.speed_m_per_s : points_[i + 1].speed_m_per_s;
+    largest_m_per_s_ = std::max({largest_m_per_s_, point.speed_m_per_s, end_speed_m_per_s});
     const double change = end_speed_m_per_s - point.speed_m_per_s;
     pieces_.push_back({point.at_s, point.speed_m_per_s, change / length_s, travel_m, end_speed_m_per_s});
     if (!last) travel_m += length_s * (point.speed_m_per_s + 0.5 * change);

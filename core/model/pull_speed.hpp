@@ -55,7 +55,7 @@ class PullSpeed {
   /// End of the linear piece that contains t_s; 0 before the start, infinity after the last point.
   [[nodiscard]] double steady_until_s(double t_s) const noexcept;
 
-  /// > 0
+  /// > 0. Points at which no time is spent do not count.
   [[nodiscard]] double largest_m_per_s() const noexcept { return largest_m_per_s_; }
   /// One speed from the start on.
   [[nodiscard]] bool is_constant() const noexcept;

@@ -68,6 +68,7 @@ base::Result<std::vector<FolderLack>> probe_folder(const std::filesystem::path& 
   const ProbeNames names{folder, calls};
   constexpr mode_t kMode = 0600;
   const Descriptor file{calls.open(names.first(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, kMode)};
+  if (!file.open() && is_full(errno)) return lacks;
   if (!file.open()) return refused("cannot be written", errno);
   if (calls.flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno != EWOULDBLOCK) {
     lacks.push_back({fmt::format("has no locks (flock: {})", system_message(errno)),
@@ -88,7 +89,8 @@ base::Result<std::vector<FolderLack>> probe_folder(const std::filesystem::path& 
     return refused("files in it cannot be written", errno);
   if (calls.fsync(file.get()) != 0 && !is_full(errno)) return refused("files in it cannot be synced", errno);
   const Descriptor opened{calls.open(folder.c_str(), O_RDONLY | O_CLOEXEC, 0)};
-  if (opened.open() && calls.fsync(opened.get()) != 0) {
+  if (!opened.open()) return refused("cannot be opened for reading, which its sync needs", errno);
+  if (calls.fsync(opened.get()) != 0 && !is_full(errno)) {
     if (!is_unsupported(errno)) return refused("cannot be synced", errno);
     lacks.push_back({fmt::format("cannot sync folders (fsync: {})", system_message(errno)),
                      "a power cut may take the newest journal or record with it, though its content was "

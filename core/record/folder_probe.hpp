@@ -20,8 +20,8 @@ struct FolderLack {
 /// Tries the operations that journals and records need: create, write, sync, lock, rename without replacing
 /// (or else hard link), sync of the folder, free space. Its files have random names and are removed, as are
 /// those left by a killed probe.
-/// \return missing features without which records can still be made; none on ext4, XFS, Btrfs. A write or
-/// sync of a file that fails because the disk is full counts as working. Errors: kFailure if no record can be
+/// \return missing features without which records can still be made; none on ext4, XFS, Btrfs. A creation,
+/// write or sync that fails because the disk is full counts as working. Errors: kFailure if no record can be
 /// made; one line without the folder.
 [[nodiscard]] base::Result<std::vector<FolderLack>> probe_folder(const std::filesystem::path& folder,
                                                                  const FileCalls& calls = system_calls());

@@ -93,7 +93,6 @@ void judge_chunked(const DatasetHandle& dataset, const std::string& name, const 
 void judge_whole(const DatasetHandle& dataset, const std::string& name, Verdict& verdict) {
   const SpaceHandle space{H5Dget_space(dataset.get()), "space of " + name};
   const TypeHandle type{H5Dget_type(dataset.get()), "type of " + name};
-  if (H5Tget_class(type.get()) == H5T_VLEN || H5Tis_variable_str(type.get()) > 0) return;
   const std::size_t size = bytes_of(shape_of(space, name), H5Tget_size(type.get()), name);
   if (size == 0) return;
   std::vector<std::byte> bytes(size);
@@ -104,6 +103,8 @@ void judge_whole(const DatasetHandle& dataset, const std::string& name, Verdict&
 void judge_dataset(hid_t file, const std::string& name, Verdict& verdict) {
   try {
     const DatasetHandle dataset = open_dataset(file, name);
+    const TypeHandle type{H5Dget_type(dataset.get()), "type of " + name};
+    if (H5Tget_class(type.get()) == H5T_VLEN || H5Tis_variable_str(type.get()) > 0) return;
     const PropertyHandle properties{H5Dget_create_plist(dataset.get()), "properties of " + name};
     if (H5Pget_layout(properties.get()) == H5D_CHUNKED) {
       judge_chunked(dataset, name, properties, verdict);

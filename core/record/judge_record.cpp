@@ -46,10 +46,10 @@ bool judge_format(hid_t file, Verdict& verdict) {
       })) {
     return false;
   }
-  if (*verdict.format_version <= kFormatVersion) return true;
+  const std::string refusal = version_refusal(*verdict.format_version);
+  if (refusal.empty()) return true;
   verdict.kind.clear();
-  verdict.note("format_version", fmt::format("is {}, this program reads up to {}: take a newer one",
-                                             *verdict.format_version, kFormatVersion));
+  verdict.note("format_version", refusal);
   return false;
 }
 

@@ -135,7 +135,7 @@ class PairOfReaders {
 
   base::Result<Record> read(const std::string& path, std::span<const std::string> next) {
     std::size_t own = readings_[0].path == path ? 0 : 1;
-    if (readings_[own].path != path) {
+    if (path.empty() || readings_[own].path != path) {
       own = !next.empty() && readings_[0].path == next[0] ? 1 : 0;
       if (auto begun = begin(readings_[own], path); !begun) return tl::unexpected(begun.error());
     }

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <new>
 #include <utility>
 
 #include "core/base/wording.hpp"
@@ -130,6 +132,14 @@ void verify(const GivenFile& given, const std::filesystem::path& path, const Rec
   verify_scans(entry.get(), record.header.board, scans);
 }
 
+/// Of an exception while a file was read.
+base::Error why_not(const GivenFile& given, const std::filesystem::path& path, const std::exception& error) {
+  const bool no_memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
+  if (const int refused = no_memory ? ENOMEM : given.refused(); refused != 0)
+    return base::failure("{}: {}", path.string(), why_unreadable(refused)).value();
+  return base::usage_error("{}: {}", path.string(), base::reason_of(error)).value();
+}
+
 base::Error of_file(const std::filesystem::path& path, const base::Error& error) {
   return {error.kind, fmt::format("{}: {}", path.string(), error.message)};
 }
@@ -141,9 +151,7 @@ base::Result<Record> read_by(const Read& read, const std::filesystem::path& path
   try {
     return read(*given, path);
   } catch (const std::exception& error) {
-    if (given->refused() != 0)
-      return base::failure("{}: {}", path.string(), why_unreadable(given->refused()));
-    return base::usage_error("{}: {}", path.string(), base::reason_of(error));
+    return tl::unexpected(why_not(*given, path, error));
   }
 }
 
@@ -172,10 +180,14 @@ base::Result<void> verify_record(const std::filesystem::path& path, const Record
   try {
     verify(*given, path, record, scans);
     return {};
+  } catch (const HdfError& error) {
+    return tl::unexpected(why_not(*given, path, error));
+  } catch (const std::runtime_error& error) {
+    // Of the source: nothing is known against the file.
+    return base::failure("{}: cannot be compared with its scans now: {}: try again", path.string(),
+                         base::reason_of(error));
   } catch (const std::exception& error) {
-    if (given->refused() != 0)
-      return base::failure("{}: {}", path.string(), why_unreadable(given->refused()));
-    return base::usage_error("{}: {}", path.string(), base::reason_of(error));
+    return tl::unexpected(why_not(*given, path, error));
   }
 }
 

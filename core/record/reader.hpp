@@ -21,7 +21,7 @@ namespace stickslip::record {
 /// truncated or, as far as HDF5 notices, damaged, has data of other types, shapes or ranges, lacks the scan
 /// rate or the calibration of its counts (the load cell's or the board's polynomial), or has raw values that
 /// do not match their checksum; kBusy if a program is writing it; kNoPermission; kFailure if it cannot be
-/// read.
+/// read or memory is exhausted.
 [[nodiscard]] base::Result<Record> read_record(const std::filesystem::path& path,
                                                const FileCalls& calls = system_calls());
 
@@ -43,8 +43,9 @@ namespace stickslip::record {
 
 /// Verifies a file against the record and source it was written from, piece by piece. Of `record` only the
 /// quantity of the raw values and the second channel's settings are compared. Errors: kUsage if the file is
-/// invalid, if its scans differ from the source in any bit (index, raw value, code of the second channel, and
-/// noise-free force if the file has a truth), or if the source throws; kFailure if the file cannot be read.
+/// invalid, or if its scans differ from the source in any bit (index, raw value, code of the second channel,
+/// and noise-free force if the file has a truth); kFailure if the file cannot be read, memory is exhausted or
+/// the source throws std::runtime_error.
 [[nodiscard]] base::Result<void> verify_record(const std::filesystem::path& path, const Record& record,
                                                const ScanSource& scans,
                                                const FileCalls& calls = system_calls());

@@ -144,6 +144,16 @@ class Sled {
   double capture_s_ = 0.0;
 };
 
+// Without noise no residual has a likelihood: the ratio is NaN.
+TEST(SlipFollower, AnEndOfWhichTheScansTellNothingStaysUndecided) {
+  LiveScene scene;
+  scene.sigma = 0.0;
+  const Followed followed = follow(scene, scene.characterised());
+  ASSERT_GE(followed.slips().size(), 9U);
+  for (const Ended& slip : followed.slips())
+    EXPECT_TRUE(!slip.decided || slip.captured) << slip.slip.evidence;
+}
+
 // Few and many scans a cycle, slow and quick oscillations; nothing is known of the tester.
 TEST(SlipFollower, TellsCapturesFromAnEscapeWhateverTheRate) {
   const std::vector<std::pair<double, double>> rates{{100.0, 5.0},   {350.0, 20.0},    {1000.0, 10.0},

@@ -255,6 +255,28 @@ TEST_F(FileSystem, ARecordThatIsOpenElsewhereIsNoStrangerToItsJournal) {
   ::close(other);
 }
 
+TEST_F(FileSystem, AJournalThatCannotBeReadNowIsNotComparedAndWaits) {
+  const fs::path journal = folder_ / "a.journal";
+  int told = 0;
+  test::FaultyDisk disk;
+  disk.count_reads();
+  int refused = 0;
+  for (bool was_refused = true; was_refused; ++refused) {
+    SCOPED_TRACE(refused);
+    if (!fs::exists(journal)) test::write_journal(journal, test::whole_record());
+    disk.refuse(refused, 1, EIO);
+    const auto made = finalise(journal, nullptr, disk);
+    was_refused = disk.calls() > refused;
+    ASSERT_TRUE(fs::exists(record_));
+    if (made) continue;
+    ASSERT_EQ(made.error().kind, base::ErrorKind::kFailure);
+    ASSERT_THAT(made.error().message, testing::Not(HasSubstr("other scans")));
+    if (made.error().message.find("cannot be compared with its scans now") != std::string::npos) ++told;
+    ASSERT_TRUE(fs::exists(journal) || made.error().message.find("durable") != std::string::npos);
+  }
+  EXPECT_GT(told, 0);
+}
+
 // ---- syncing --------------------------------------------------------------------------------
 
 TEST_F(FileSystem, FoldersThatCannotBeSyncedRefuseNothing) {
@@ -357,7 +379,22 @@ TEST_F(FileSystem, TheProbeRefusesAFolderInWhichNoRecordCanBe) {
   disk_.fsync_error = EINVAL;
   EXPECT_EQ(told(probe_folder(folder_.path(), disk_)),
             "refused: files in it cannot be synced: Invalid argument");
+  disk_.fsync_error = 0;
+  disk_.open_error = EACCES;  // Mode -wx.
+  EXPECT_EQ(told(probe_folder(folder_.path(), disk_)),
+            "refused: cannot be opened for reading, which its sync needs: Permission denied");
   EXPECT_EQ(names(), std::vector<std::string>{"a.h5"});
+}
+
+TEST_F(FileSystem, TheProbeToleratesAFullDisk) {
+  for (const int error : {ENOSPC, EDQUOT}) {
+    disk_.create_error = error;
+    EXPECT_EQ(told(probe_folder(folder_.path(), disk_)), "");
+    disk_.create_error = 0;
+    disk_.fsync_error = disk_.folder_fsync_error = error;
+    EXPECT_EQ(told(probe_folder(folder_.path(), disk_)), "");
+    disk_.fsync_error = disk_.folder_fsync_error = 0;
+  }
 }
 
 TEST_F(FileSystem, TheProbeRemovesWhatAKillLeftAndNotThatOfAnother) {

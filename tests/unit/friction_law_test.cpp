@@ -345,6 +345,12 @@ TEST(FrictionLaw, AsksForALongerHoldWhereHoldsAreMade) {
   EXPECT_TRUE(next->tells_ageing);
   EXPECT_EQ(next->hold_s, kLongestHold_s);
   EXPECT_NEAR(next->pull_speed_m_per_s, 3.0 * kInPerMin, 1e-12);
+  // A hold can be made where no pull of the range sticks.
+  const auto only_hold =
+      next_pull(find_law(tests), tests, {20.0 * kInPerMin, 50.0 * kInPerMin}, 6.0 * kInPerMin);
+  ASSERT_TRUE(only_hold);
+  EXPECT_TRUE(only_hold->tells_ageing);
+  EXPECT_EQ(only_hold->hold_s, kLongestHold_s);
 }
 
 /// Four slow pulls, each on its sheet, and a sheet with slips at 1 in/min and after four holds, of a
@@ -505,6 +511,8 @@ TEST(LawTests, ATestThatChangesItsSpeedCountsByItsRests) {
   test.speed_changes = true;
   EXPECT_THAT(tests_for_law(std::vector{test}).left_out[0].reason,
               testing::StartsWith("the pull speed changes"));
+  test.rests = {{0.001, 0.1, 0.38, 1e-4, 0.0, 0.30, 2e-4, false}};
+  EXPECT_EQ(tests_for_law(std::vector{test}).tests.size(), 1U);  // Turning points tell no Q.
   test.rests = {{0.001, 0.1, 0.38, 1e-4, 0.0, 0.30, 2e-4, false}};
   test.speed_changes = false;
   test.results.Q = analysis::Estimate::of(0.2);

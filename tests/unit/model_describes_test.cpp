@@ -167,6 +167,19 @@ TEST(ModelResults, SlipsThatTellNothingDoNotCountInTheMeans) {
   EXPECT_NEAR(kinetic(0.99, true), 0.5, 1e-12);
 }
 
+TEST(ModelResults, EscapeSpeedsSayWhyTheScatterIsUnknown) {
+  const auto reason = [](std::size_t slips, double S) {
+    SlipEstimates estimates = estimates_of(0.5, std::vector<Slip>(slips, kSurelyCaptured));
+    estimates.belt = model::BeltMotion{model::PullSpeed::make({{0.0, 0.001}, {9.0, 0.002}}).value(), 0.0};
+    for (estimate::SlipWindow& window : estimates.windows) window.slip.S = S;
+    TestResults results;
+    escape_results(estimates, results);
+    return results.escape_speed.reason;
+  };
+  EXPECT_EQ(reason(2, 0.35), "fewer than three slips to compare");
+  EXPECT_EQ(reason(3, 0.25), "the mean S - K is not positive");
+}
+
 // A ring-down has the amplitude √((S − K)² + (u/ω)²) by the speed u of its onset: at 95 % of the belt's speed
 // S − K is larger than at the whole. A slip that sticks again tells S − K by its times.
 TEST(ModelResults, CreepBeforeASlipIsInTheSystematicPartOfRingDownsAlone) {

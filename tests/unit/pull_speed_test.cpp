@@ -24,6 +24,11 @@ TEST(PullSpeed, IsLinesBetweenPoints) {
   EXPECT_EQ(speed->largest_m_per_s(), 0.006);
 }
 
+TEST(PullSpeed, ASpeedWithoutDurationIsNotTheLargest) {
+  EXPECT_EQ(PullSpeed::make({{0.0, 5.0}, {0.0, 1.0}})->largest_m_per_s(), 1.0);
+  EXPECT_EQ(PullSpeed::make({{0.0, 1.0}, {2.0, 2.0}, {2.0, 9.0}, {2.0, 1.0}})->largest_m_per_s(), 2.0);
+}
+
 TEST(PullSpeed, PullsWhereItIsAboveZero) {
   // Forwards, to a stop in a line, back, at rest, forwards again from rest in a line.
   const auto speed = PullSpeed::make(

@@ -277,6 +277,15 @@ TEST(ReadApart, SaysWhatTheReaderSays) {
   }
 }
 
+TEST(ReadApart, AnEmptyPathIsNoFile) {
+  const auto read_nothing = [] {
+    read_records_apart();
+    const auto read = read_record_apart("");
+    std::_Exit(read ? 0 : read.error().exit_status());
+  };
+  EXPECT_EXIT(read_nothing(), testing::ExitedWithCode(2), "");
+}
+
 TEST(ReadApart, OfWhatDoesNotComeBackNamesFileLimitAndRemedy) {
   ApartReader reader{LimitedChild{do_as_told}};
   const auto spun = reader.read("spin", kLittle);

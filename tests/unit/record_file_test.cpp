@@ -9,6 +9,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/base/sanitized.hpp"
 #include "core/record/finaliser.hpp"
 #include "core/record/iso_time.hpp"
 #include "core/record/reader.hpp"
@@ -551,6 +552,23 @@ TEST(HostileFile, WithOtherTypesOrShapes) {
                                           H5P_DEFAULT);
                          }),
                  "results/rung 'mixed' is unknown");
+}
+
+TEST(HostileFile, LargerThanTheMemoryIsNotCalledDamaged) {
+  if (base::kSanitized) GTEST_SKIP() << "a sanitizer maps terabytes: no limit";
+  const TemporaryFolder folder;
+  const fs::path path = altered(folder, [](hid_t f) {
+    replace_column(f, "entry/raw/scan", H5T_STD_I64LE, hsize_t{1} << 28U);
+    replace_column(f, "entry/raw/counts", H5T_STD_U16LE, hsize_t{1} << 28U);
+  });
+  const auto read_with_little = [&] {
+    const rlimit little{1U << 30U, 1U << 30U};  // Half of what the column takes.
+    ::setrlimit(RLIMIT_AS, &little);
+    const auto read = read_record(path);
+    std::fputs(read ? "read" : read.error().message.c_str(), stderr);
+    std::_Exit(read ? 0 : read.error().exit_status());
+  };
+  EXPECT_EXIT(read_with_little(), testing::ExitedWithCode(1), "there is no memory left");
 }
 
 TEST(HostileFile, WithAlteredValues) {

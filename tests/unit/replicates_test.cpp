@@ -40,7 +40,8 @@ TEST(Replicates, OneTestHasNoStandardErrorAndNoSlipNoMean) {
   EXPECT_FALSE(analysis::pool_delta_mu(one).scatter.value);
   const analysis::PooledDeltaMu none = analysis::pool_delta_mu({});
   EXPECT_FALSE(none.mean.value);
-  EXPECT_FALSE(none.mean.reason.empty());
+  EXPECT_EQ(none.mean.reason, "no slip after the first with an S - K");
+  EXPECT_EQ(none.captured_mean.reason, "no captured slip after the first with an S - K");
 }
 
 }  // namespace

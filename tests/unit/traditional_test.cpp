@@ -184,6 +184,19 @@ TEST(Traditional, UnusableScansAreLeftOutOfTheMean) {
   EXPECT_NEAR(found.kinetic_coefficient.value.value(), 0.3, 1e-14);
 }
 
+TEST(Traditional, AWindowWithoutAUsableScanSaysSo) {
+  estimate::Trace trace = oscillation(400);
+  const auto reason = [&] {
+    return traditional_coefficients(trace, slips_at_the_peaks(15), {}).kinetic_coefficient.reason;
+  };
+  trace.usable.assign(trace.size(), 0);
+  EXPECT_EQ(reason(), "no scan of the window is usable");
+  trace.usable.assign(trace.size(), 1);
+  const auto late = model::PullSpeed::make({{0.0, 0.0}, {9.0, 0.0}, {9.0, 0.005}});
+  trace.belt = model::BeltMotion{*late, 0.0};
+  EXPECT_EQ(reason(), "the belt stood still in the whole window");
+}
+
 TEST(Traditional, SteadySlidingAveragesWithoutLoadingAndUnloading) {
   std::vector<double> values(100, 0.0);
   for (int k = 0; k < 30; ++k) values.push_back(0.01 * k);

@@ -248,6 +248,25 @@ TEST(Verify, ScansAndClocksThatCannotBeAreDamage) {
   expect_damage("/entry/events/scan", -1, "scan -1 lies outside of 0 to");
 }
 
+TEST(Verify, TextsOfVariableLengthAreNotReadWhateverTheirLayout) {
+  for (const bool is_chunked : {false, true}) {
+    const Verdict verdict = after([&](hid_t file) {
+      const hid_t type = H5Tcopy(H5T_C_S1);
+      H5Tset_size(type, H5T_VARIABLE);
+      const hsize_t rows = 2;
+      const hid_t space = H5Screate_simple(1, &rows, nullptr);
+      const hid_t layout = H5Pcreate(H5P_DATASET_CREATE);
+      if (is_chunked) H5Pset_chunk(layout, 1, &rows);
+      H5Dclose(H5Dcreate2(file, "/entry/remarks", type, space, H5P_DEFAULT, layout, H5P_DEFAULT));
+      H5Pclose(layout);
+      H5Sclose(space);
+      H5Tclose(type);
+    });
+    EXPECT_EQ(findings_of(verdict),
+              "damage file: is not as it was published: process/file_sha256 does not match\n");
+  }
+}
+
 TEST(Verify, AnOlderRecordWithoutSealIsComplete) {
   const Verdict verdict = after([](hid_t file) {
     H5Ldelete(file, "/entry/process/file_sha256", H5P_DEFAULT);
@@ -257,15 +276,17 @@ TEST(Verify, AnOlderRecordWithoutSealIsComplete) {
   EXPECT_THAT(findings_of(verdict), HasSubstr("note file: was made before records had a checksum"));
 }
 
-TEST(Verify, ANewerVersionIsRefusedByName) {
-  const Verdict verdict = after([](hid_t file) {
-    const hid_t attribute = H5Aopen(file, "format_version", H5P_DEFAULT);
-    const std::int64_t newer = 999;
-    H5Awrite(attribute, H5T_NATIVE_INT64, &newer);
-    H5Aclose(attribute);
-  });
-  EXPECT_EQ(verdict.judgement, Judgement::kNotJudged);
-  EXPECT_THAT(findings_of(verdict), HasSubstr("format_version: is 999, this program reads up to"));
+TEST(Verify, AVersionThatIsNotReadIsRefusedByName) {
+  for (const std::int64_t version : {999, 0, -1}) {
+    const Verdict verdict = after([&](hid_t file) {
+      const hid_t attribute = H5Aopen(file, "format_version", H5P_DEFAULT);
+      H5Awrite(attribute, H5T_NATIVE_INT64, &version);
+      H5Aclose(attribute);
+    });
+    EXPECT_EQ(verdict.judgement, Judgement::kNotJudged) << version;
+    EXPECT_EQ(findings_of(verdict),
+              fmt::format("note format_version: {}\n", record::version_refusal(version)));
+  }
 }
 
 // ---- journals -----------------------------------------------------------------------------
