@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <future>
+#include <memory>
 #include <optional>
 #include <random>
+#include <thread>
 #include <utility>
 
 #include "core/analysis/model_results.hpp"
@@ -17,6 +20,7 @@ namespace {
 
 constexpr std::size_t kFewestSlips = 8;
 constexpr double kFewestConverged = 0.9;
+constexpr std::size_t kMostTasks = 16;
 constexpr double kTail = 0.025;
 /// Change of the cost below which a fit has settled: all parameters together then move by 0.05 of a standard
 /// error, which adds 0.1 % to their scatter.
@@ -114,16 +118,34 @@ Bootstrap bootstrap_slips(const estimate::Trace& trace, const SlipEstimates& est
                                         : std::optional<model::UniformTrajectory>{};
   result.block = static_cast<std::size_t>(std::lround(std::cbrt(static_cast<double>(slips.size()))));
   std::mt19937_64 random{settings.seed};
-  std::array<std::vector<double>, kNames.size()> values;
-  for (std::size_t i = 0; i < settings.count; ++i) {
-    const std::vector<std::size_t> drawn = draw(slips.size(), result.block, random);
-    const std::optional<Drawn> found =
-        course ? fit_all(trace, *estimates.uniform, *course, slips, drawn, sigma, prior)
-               : fit_each(trace, estimates, slips, drawn, sigma, prior);
-    if (!found) continue;
-    ++result.converged;
-    for (std::size_t j = 0; j < found->size(); ++j) values[j].push_back((*found)[j]);
+  std::vector<std::vector<std::size_t>> drawings(settings.count);
+  for (std::vector<std::size_t>& drawn : drawings) drawn = draw(slips.size(), result.block, random);
+  // On each processor every so many of them: their order does not matter.
+  const std::size_t tasks = std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, kMostTasks);
+  const auto fit_every = [&](const estimate::Trace& own, std::size_t first) {
+    std::vector<Drawn> found;
+    for (std::size_t i = first; i < drawings.size(); i += tasks) {
+      const std::optional<Drawn> one =
+          course ? fit_all(own, *estimates.uniform, *course, slips, drawings[i], sigma, prior)
+                 : fit_each(own, estimates, slips, drawings[i], sigma, prior);
+      if (one) found.push_back(*one);
+    }
+    return found;
+  };
+  std::vector<std::future<std::vector<Drawn>>> fits;
+  for (std::size_t task = 0; task < tasks; ++task) {
+    fits.push_back(
+        std::async([&fit_every, task, own = std::make_shared<const estimate::Trace>(trace.view())] {
+          return fit_every(*own, task);
+        }));
   }
+  std::array<std::vector<double>, kNames.size()> values;
+  for (std::future<std::vector<Drawn>>& fit : fits) {
+    for (const Drawn& one : fit.get()) {
+      for (std::size_t j = 0; j < one.size(); ++j) values[j].push_back(one[j]);
+    }
+  }
+  result.converged = values.front().size();
   if (static_cast<double>(result.converged) < kFewestConverged * static_cast<double>(settings.count))
     return none(fmt::format("{} of {} fits converged", result.converged, settings.count));
   for (std::size_t j = 0; j < values.size(); ++j)

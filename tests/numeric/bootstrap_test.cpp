@@ -1,3 +1,5 @@
+#include "core/analysis/bootstrap.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,7 +8,6 @@
 #include <cstdint>
 #include <string_view>
 
-#include "core/analysis/bootstrap.hpp"
 #include "core/analysis/test_analysis.hpp"
 #include "core/sim/scene_run.hpp"
 #include "tests/support/sample_limits.hpp"
@@ -58,17 +59,20 @@ TEST(Bootstrap, ScattersAsTheResultsAreOff) {
   for (const bool scattered : {false, true}) {
     SCOPED_TRACE(scattered ? "slips differ" : "slips alike");
     double square = 0.0;
+    int tests = 0;
     for (int seed = 1; seed <= kTests; ++seed) {
       const Drawn drawn = analysed(scene(scattered), static_cast<std::uint64_t>(seed), {.count = 200});
-      ASSERT_EQ(drawn.bootstrap.reason, "") << "seed " << seed;
+      if (drawn.bootstrap.spreads.empty()) continue;  // Too few slips began from sticking.
+      ++tests;
       const BootstrapSpread& delta_mu = drawn.spread("delta_mu");
-      square += std::pow((*drawn.results.delta_mu.value - 0.05) / delta_mu.standard_deviation, 2) / kTests;
+      square += std::pow((*drawn.results.delta_mu.value - 0.05) / delta_mu.standard_deviation, 2);
       EXPECT_LT(delta_mu.lowest, *drawn.results.delta_mu.value);
       EXPECT_GT(delta_mu.highest, *drawn.results.delta_mu.value);
     }
     // Of some twenty slips a standard deviation is known to 16 %.
-    EXPECT_LT(square, test::highest_mean_square(kTests) * 1.2);
-    EXPECT_GT(square, test::lowest_mean_square(kTests) / 1.2);
+    ASSERT_GE(tests, kTests / 2);
+    EXPECT_LT(square / tests, test::highest_mean_square(tests) * 1.2);
+    EXPECT_GT(square / tests, test::lowest_mean_square(tests) / 1.2);
   }
 }
 
