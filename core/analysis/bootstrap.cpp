@@ -113,7 +113,8 @@ Bootstrap bootstrap_slips(const estimate::Trace& trace, const SlipEstimates& est
   if (!trace.belt.is_constant()) return none("the pull speed changes");
   const std::vector<estimate::SlipWindow> slips = slips_that_count(estimates);
   if (slips.size() < kFewestSlips)
-    return none(fmt::format("{} slips count, {} are needed", slips.size(), kFewestSlips));
+    return none(fmt::format("{} slips that count in the means are needed, the test has {}", kFewestSlips,
+                            slips.size()));
   const auto course = estimates.uniform ? model::UniformTrajectory::make(estimates.uniform->parameters)
                                         : std::optional<model::UniformTrajectory>{};
   result.block = static_cast<std::size_t>(std::lround(std::cbrt(static_cast<double>(slips.size()))));

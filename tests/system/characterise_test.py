@@ -79,6 +79,25 @@ class Characterise(unittest.TestCase):
         self.assertLess(error, alone["details"]["delta_mu"]["standard_error"] / 2)
         self.assertLess(abs(known["delta_mu"] - 0.05), 5 * error)
 
+    def test_slips_drawn_again_scatter_as_the_standard_errors_say(self):
+        told = lambda *options: run(CLI, "analyze", self.pull, "--bootstrap", 300, *options)
+        test = json.loads(told("--json").stdout)["tests"][0]
+        drawn = test["bootstrap"]
+        self.assertGreaterEqual(drawn["converged"], 290)
+        for name in ("mu_s", "mu_k", "delta_mu"):
+            ratio = drawn[name]["standard_deviation"] / test["details"][name]["standard_error"]
+            self.assertTrue(0.5 < ratio < 2, f"{name}: {ratio}")
+            lowest, highest = drawn[name]["interval"]
+            self.assertTrue(lowest < test[name] < highest, name)
+        self.assertEqual(json.loads(told("--json").stdout)["tests"][0]["bootstrap"], drawn)
+        self.assertNotEqual(json.loads(told("--json", "--seed", 2).stdout)["tests"][0]["bootstrap"], drawn)
+        text = told().stdout
+        self.assertIn("slips drawn again 300 times in blocks of", text)
+        self.assertLessEqual(max(map(len, text.splitlines()[-5:])), 80)
+        ring_down = run(CLI, "analyze", self.ring_downs[0], "--bootstrap", 300)
+        self.assertIn("no bootstrap: 8 slips that count in the means are needed, the test has 1", ring_down.stdout)
+        self.assertEqual(run(CLI, "analyze", self.pull, "--bootstrap", 99).returncode, 2)
+
     def tapped(self, name, frequency, rate):
         """A record of two taps on a cell of 5 % damping, by the closed form, with noise from a counter."""
         ring = lambda t: math.exp(-0.05 * math.tau * frequency * t) * math.sin(math.sqrt(1 - 0.05**2) * math.tau * frequency * t)
