@@ -52,6 +52,7 @@ struct EscapeSpeeds {
 
 /// Relative scatter of S − K over the slips that began from sticking: standard deviation over mean. The
 /// variance that the noise of the scans contributes is subtracted; 0 if it is larger than that found.
+/// \param estimates  converged.
 /// \return nullopt for fewer than three slips, or if the mean is not positive.
 [[nodiscard]] std::optional<double> delta_mu_scatter(const SlipEstimates& estimates);
 

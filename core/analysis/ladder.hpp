@@ -60,7 +60,9 @@ void tell_held_damping(TestResults& results);
 [[nodiscard]] bool may_never_have_stuck(const TesterEstimate& tester, const TestResults& results);
 
 /// Sets to absent what the first slip would tell: static_coefficient, mu_s, delta_mu, Q, threshold_speed and
-/// pull_speed_measured. Adds the finding kFastBelt.
+/// pull_speed_measured. Adds the finding kFastBelt, with the speed K g/ω up to which a sled comes to rest on
+/// the belt. Call it only where may_never_have_stuck().
+/// \param tester  as for may_never_have_stuck(). \param results  with mu_k.
 void void_start(const TesterEstimate& tester, double gravity_m_per_s2, TestResults& results);
 
 /// Sets S − K, which lies between 0 and `bound` and is not told from 0, to half of the bound, with as much

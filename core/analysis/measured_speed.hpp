@@ -6,9 +6,10 @@
 ///     for (…) measured.add(time_s, speed_m_per_s);
 ///     if (const auto course = measured.course()) …
 ///
-/// A point is set where no line from the point before stays within the channel's resolution of every reading.
-/// The speeds of the points are the least-squares fit of the lines between them. This averages noise and
-/// rounding, so that they do not appear as acceleration.
+/// The first and the latest reading are points. A reading between them becomes one where no line from the
+/// point before stays within the channel's resolution of every reading up to the next one. The speeds of the
+/// points are the least-squares fit of the lines between them. This averages noise and rounding, so that they
+/// do not appear as acceleration.
 #pragma once
 
 #include <cstddef>

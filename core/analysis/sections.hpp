@@ -40,7 +40,8 @@ struct FittedSlip {
 /// Combined estimates of all sections.
 struct TestEstimates {
   /// Only the results of model_results() and feature_results(). Means over sections, weighted by their slips;
-  /// absent if one section has no value.
+  /// absent if one section has no value, and all if the means do not tell S from K (model_describes is then
+  /// false). S and S − K may be from the bound instead: estimate_in_sections().
   TestResults results;
   base::LongColumn<double> log_likelihood_ratios;  ///< Captured over free, one fewer than slips; 0: unknown.
   base::LongColumn<detect::Cycle> cycles;          ///< One for each slip, as from cycle_table().

@@ -29,7 +29,7 @@ struct Cycle {
   std::int64_t number = 0;  ///< From 0.
   /// Scan nearest to the peak, index of the acquisition; LiveDetector::add() counts otherwise.
   base::ScanIndex first_scan = 0;
-  double onset_time_s = 0.0;    ///< Slip onset.
+  double onset_time_s = 0.0;    ///< Slip onset; NaN if the slip did not begin from sticking, or if unknown.
   double capture_time_s = 0.0;  ///< Slip ends in sticking; NaN if not, or if unknown.
   double peak_time_s = 0.0;     ///< Maximum of the force, interpolated between scans.
   double period_s = 0.0;        ///< Peak to next peak; NaN if none; after the test also before a break.

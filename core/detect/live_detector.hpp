@@ -8,9 +8,9 @@
 /// Results depend on scans, gaps and settings, not on the division into blocks. O(1) for a scan. The fits of
 /// a closing cycle have bounded size and are distributed over scans. Allocates only in the constructor.
 ///
-/// A fall is reported kFallDelayScans after the scan at which the median of three scans has fallen below its
-/// maximum by the hysteresis. If the highest scan is isolated, the median's maximum is lower, and the scans
-/// themselves may have fallen by the hysteresis one scan earlier.
+/// A fall is reported kFallDelayScans, or without despiking one scan, after the scan at which the median of
+/// three scans has fallen below its maximum by the hysteresis. If the highest scan is isolated, the median's
+/// maximum is lower, and the scans themselves may have fallen by the hysteresis one scan earlier.
 #pragma once
 
 #include <array>

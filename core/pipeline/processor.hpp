@@ -104,11 +104,12 @@ class Processor {
   /// \param in_use  as ProcessorSettings::calibration.
   [[nodiscard]] CommandReport recalibrate(daq::Calibration calibration, const CalibrationInUse& in_use,
                                           const std::string& who);
-  /// Sets the nominal pull speed of the tests that begin from here on; nullopt: unknown.
+  /// Sets the nominal pull speed of the tests that begin from here on; nullopt: unknown. Sinks are not told:
+  /// the caller sets it in the header of their records, too.
   void plan_pull_speed(std::optional<double> speed_m_per_s) {
     settings_.analysis.tester.pull_speed_m_per_s = speed_m_per_s;
   }
-  /// Sets the method of the tests that begin from here on.
+  /// Sets the method of the tests that begin from here on. Sinks are not told, as by plan_pull_speed().
   void plan_method(const model::Method& method) { settings_.analysis.method = method; }
 
   [[nodiscard]] BenchState bench() const noexcept { return bench_.state(); }
