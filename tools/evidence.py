@@ -13,11 +13,11 @@ import sys
 
 # Tests of one row, unless told, as the documents quote them.
 COUNTS = {"estimator": 4000, "escape": 10000, "regime": 10000, "promise": 1000, "scatter": 1000, "ramp": 400, "consistency": 100000, "trend": 4000,
-          "instrument": 60}
+          "instrument": 60, "rungs": 100}
 ROOT = pathlib.Path(__file__).parents[1]
 BUILD = ROOT / "build/bench"
 # (what is built, what is run) where it is no program of bench/ that is called NAME_limits.
-SCRIPTS = {"instrument": ("stickslip", ["/usr/bin/python3", ROOT / "tests/independent/instruments.py", BUILD])}
+SCRIPTS = {name: ("stickslip", ["/usr/bin/python3", ROOT / f"tests/independent/{file}.py", BUILD]) for name, file in (("instrument", "instruments"), ("rungs", "rungs"))}
 
 
 def program(name):

@@ -55,7 +55,8 @@ struct Absence {
 /// One quantity over the tests of a group.
 struct GroupQuantity {
   std::optional<Replicates> replicates;  ///< Nullopt if no test has a value.
-  std::vector<std::size_t> tests;  ///< Indices of the tests with a value; Outlier::index refers to this list.
+  /// Indices, among all tests, of those with a value. Outlier::index refers to this list.
+  std::vector<std::size_t> tests;
   std::vector<Absence> absences;
   std::optional<double> systematic_uncertainty;  ///< Of the mean; nullopt if no test has one.
 };

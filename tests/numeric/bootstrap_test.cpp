@@ -55,7 +55,7 @@ sim::Scene scene(bool scattered) {
 // The true error of a result is what its scatter over the drawings says, with one S and K for all and slip by
 // slip.
 TEST(Bootstrap, ScattersAsTheResultsAreOff) {
-  constexpr int kTests = 40;
+  constexpr int kTests = 24;
   for (const bool scattered : {false, true}) {
     SCOPED_TRACE(scattered ? "slips differ" : "slips alike");
     double square = 0.0;
