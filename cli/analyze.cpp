@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -49,6 +50,7 @@ struct AnalyzeOptions {
   bool json = false;
 };
 
+constexpr int kExact = 6;             // Decimals of what does not scatter.
 constexpr int kFewestDrawings = 100;  // For intervals of 95 %.
 constexpr int kMostDrawings = 1'000'000;
 
@@ -114,7 +116,8 @@ std::string text_of(const analysis::Bootstrap& drawn, const analysis::TestResult
   for (const analysis::BootstrapSpread& spread : drawn.spreads) {
     analysis::for_each_result(results, [&](const analysis::ResultName& name, const analysis::Estimate& own) {
       if (name.name != spread.name) return;
-      const int decimals = base::decimals_of(spread.standard_deviation, base::kUncertaintyDigits);
+      const double sd = spread.standard_deviation;
+      const int decimals = sd > 0.0 ? std::max(base::decimals_of(sd, base::kUncertaintyDigits), 0) : kExact;
       const auto cell = [decimals](double value) { return fmt::format("{:.{}f}", value, decimals); };
       table.add({std::string{name.name}, own.standard_error ? cell(*own.standard_error) : std::string{},
                  cell(spread.standard_deviation), cell(spread.lowest), cell(spread.highest)});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <string>
@@ -157,7 +158,8 @@ base::Result<TapsOfFiles> read_taps(const std::vector<std::string>& files) {
     const base::Result<record::Record> record = record::read_record_in_turn(files, i);
     if (!record) return tl::unexpected(record.error());
     const double rate_Hz = record->header.board.scan_rate_granted_Hz;
-    if (!(rate_Hz > 0.0)) return base::usage_error("{}: the record has no scan rate", files[i]);
+    if (!(rate_Hz > 0.0))
+      return base::usage_error("{}: the record has no scan rate", base::printable(files[i]));
     found.lowest_rate_Hz = i == 0 ? rate_Hz : std::min(found.lowest_rate_Hz, rate_Hz);
     found.highest_rate_Hz = std::max(found.highest_rate_Hz, rate_Hz);
     const std::vector<daq::ScanIndex>& scans = record->scan;
@@ -212,6 +214,7 @@ std::string table_of(const TapsOfFiles& found, const Characterisation& result,
   text += agreement_of(result, "taps");
   for (const std::string& refused : found.refused) text += fmt::format("left out: {}\n", refused);
   const double frequency_Hz = *cell.frequency_Hz.value;
+  const double seen_Hz = result.coupling.omega / (2.0 * std::numbers::pi);
   text += fmt::format(
       "\nIn the configuration:\n"
       "  [tester]\n"
@@ -221,8 +224,9 @@ std::string table_of(const TapsOfFiles& found, const Characterisation& result,
       frequency_Hz, *cell.damping_ratio.value);
   if (found.lowest_rate_Hz == found.highest_rate_Hz)
     text += fmt::format(
-        "At {:.6g} scans a second a cell of {:.6g} Hz looks the same. Taps at another scan rate tell.\n",
-        found.lowest_rate_Hz, analysis::alias_Hz(frequency_Hz, found.lowest_rate_Hz));
+        "At {:.6g} scans a second a cell that swings at {:.6g} Hz looks the same. Taps at another scan rate "
+        "tell.\n",
+        found.lowest_rate_Hz, analysis::alias_Hz(seen_Hz, found.lowest_rate_Hz));
   return text;
 }
 

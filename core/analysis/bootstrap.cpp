@@ -12,7 +12,10 @@
 #include <thread>
 #include <utility>
 
+#include <Eigen/Cholesky>
+
 #include "core/analysis/model_results.hpp"
+#include "core/base/contract.hpp"
 #include "core/signal/statistics.hpp"
 
 namespace stickslip::analysis {
@@ -28,11 +31,33 @@ constexpr double kSettled = 1e-3;
 
 /// What a drawing gives: S, K, S − K, ω, γ/2ω.
 using Drawn = std::array<double, 5>;
+constexpr std::size_t kWithDrift = 2;  // S and K.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kNames{
     {{"mu_s", "1"}, {"mu_k", "1"}, {"delta_mu", "1"}, {"omega", "rad/s"}, {"gamma_over_2omega", "1"}}};
 
 Drawn results_of(double S, double K, const model::SharedParameters& shared) {
   return {S, K, S - K, shared.omega, shared.oscillator().gamma_over_2omega()};
+}
+
+/// Random numbers of a drawing, whichever thread makes it.
+std::mt19937_64 stream_of(std::uint64_t seed, std::size_t drawing) {
+  constexpr unsigned kHalf = 32;
+  std::seed_seq words{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> kHalf),
+                      static_cast<std::uint32_t>(drawing)};
+  return std::mt19937_64{words};
+}
+
+/// The prior as another characterisation and another measurement of the speed would have told it.
+estimate::SharedPrior drawn_from(estimate::SharedPrior prior, std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  if (prior.coupling) {
+    const Eigen::Vector2d step = Eigen::LLT<Eigen::Matrix2d>{prior.coupling->covariance}.matrixL() *
+                                 Eigen::Vector2d{normal(random), normal(random)};
+    prior.coupling->omega += step[0];
+    prior.coupling->gamma_over_2omega += step[1];
+  }
+  if (prior.belt) prior.belt->speed_over_gravity_s += prior.belt->standard_error_s * normal(random);
+  return prior;
 }
 
 /// Numbers of the slips of a drawing.
@@ -104,6 +129,7 @@ BootstrapSpread spread_of(const std::pair<std::string_view, std::string_view>& n
 
 Bootstrap bootstrap_slips(const estimate::Trace& trace, const SlipEstimates& estimates, double sigma,
                           const estimate::SharedPrior& prior, const BootstrapSettings& settings) {
+  STICKSLIP_EXPECTS(settings.count > 0);
   Bootstrap result;
   result.settings = settings;
   const auto none = [&result](std::string why) {
@@ -117,33 +143,37 @@ Bootstrap bootstrap_slips(const estimate::Trace& trace, const SlipEstimates& est
                             slips.size()));
   const auto course = estimates.uniform ? model::UniformTrajectory::make(estimates.uniform->parameters)
                                         : std::optional<model::UniformTrajectory>{};
+  signal::RunningMean drift;  // As in the results, in whose S and K it is.
+  for (const estimate::SlipWindow& slip : slips) drift.add(estimates.drift.at(slip.slip.onset_s));
   result.block = static_cast<std::size_t>(std::lround(std::cbrt(static_cast<double>(slips.size()))));
-  std::mt19937_64 random{settings.seed};
-  std::vector<std::vector<std::size_t>> drawings(settings.count);
-  for (std::vector<std::size_t>& drawn : drawings) drawn = draw(slips.size(), result.block, random);
   // On each processor every so many of them: their order does not matter.
   const std::size_t tasks = std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, kMostTasks);
   const auto fit_every = [&](const estimate::Trace& own, std::size_t first) {
     std::vector<Drawn> found;
-    for (std::size_t i = first; i < drawings.size(); i += tasks) {
+    for (std::size_t i = first; i < settings.count; i += tasks) {
+      std::mt19937_64 random = stream_of(settings.seed, i);
+      const std::vector<std::size_t> drawn = draw(slips.size(), result.block, random);
+      const estimate::SharedPrior told = drawn_from(prior, random);
       const std::optional<Drawn> one =
-          course ? fit_all(own, *estimates.uniform, *course, slips, drawings[i], sigma, prior)
-                 : fit_each(own, estimates, slips, drawings[i], sigma, prior);
+          course ? fit_all(own, *estimates.uniform, *course, slips, drawn, sigma, told)
+                 : fit_each(own, estimates, slips, drawn, sigma, told);
       if (one) found.push_back(*one);
     }
     return found;
   };
   std::vector<std::future<std::vector<Drawn>>> fits;
   for (std::size_t task = 0; task < tasks; ++task) {
-    fits.push_back(
-        std::async([&fit_every, task, own = std::make_shared<const estimate::Trace>(trace.view())] {
-          return fit_every(*own, task);
-        }));
+    // It has a name, as async moves what it is given before it knows whether there is room for a thread.
+    const auto fit_own = [&fit_every, task, own = std::make_shared<const estimate::Trace>(trace.view())] {
+      return fit_every(*own, task);
+    };
+    fits.push_back(std::async(fit_own));
   }
   std::array<std::vector<double>, kNames.size()> values;
   for (std::future<std::vector<Drawn>>& fit : fits) {
     for (const Drawn& one : fit.get()) {
-      for (std::size_t j = 0; j < one.size(); ++j) values[j].push_back(one[j]);
+      for (std::size_t j = 0; j < one.size(); ++j)
+        values[j].push_back(one[j] + (j < kWithDrift ? drift.mean : 0.0));
     }
   }
   result.converged = values.front().size();

@@ -41,9 +41,11 @@ struct Bootstrap {
 
 /// Draws as many slips as the means count, with replacement, and fits them anew, as the test was fitted: with
 /// one S and K if SlipEstimates::uniform is present, else slip by slip. Neighbours are drawn in blocks of
-/// ∛n slips [Hall, Horowitz and Jing, Biometrika 82:561–574, 1995] on a circle, since levels wander.
+/// ∛n slips [Hall, Horowitz and Jing, Biometrika 82:561–574, 1995] on a circle, since levels wander. The
+/// prior's means are drawn anew, too. The drift is that of the test: its uncertainty is not in the scatter.
 /// \param estimates  of the whole test; converged.
 /// \param prior  with which it was fitted.
+/// \param settings  count > 0 (contract).
 /// \return without spreads, but with a reason: of fewer than eight slips that count, where the pull speed
 /// changes, or if fewer than nine drawings in ten converge.
 [[nodiscard]] Bootstrap bootstrap_slips(const estimate::Trace& trace, const SlipEstimates& estimates,

@@ -6,13 +6,16 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <optional>
+#include <utility>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include "core/estimate/huber.hpp"
 #include "core/estimate/minimise.hpp"
+#include "core/signal/noise.hpp"
 #include "core/signal/statistics.hpp"
 
 namespace stickslip::analysis {
@@ -20,16 +23,16 @@ namespace {
 
 /// Standard deviations of the noise by which a reading of a tap is off the level.
 constexpr double kTapSigmas = 12.0;
-/// Readings below that, one after the other, which end a tap.
-constexpr std::size_t kQuietScans = 32;
+/// Time below that which ends a tap: half a period of the slowest cell.
+constexpr double kQuiet_s = 0.15;
+/// Readings a second beyond which neighbours are averaged: it leaves frequency and damping as they are.
+constexpr double kHighestRate_Hz = 4000.0;
 /// Fewest readings of a fit: as many for the residuals as parameters, and more.
 constexpr std::size_t kFewestScans = 12;
-/// Twice the most readings after the largest one that count: more would tell the oscillation no better than
-/// anybody needs.
-constexpr std::size_t kMostScans = 2048;
-/// Standard errors of the variance of the residuals up to which they count as noise. Noise exceeds it in one
-/// fit of six, whose successor begins a reading later; with a larger one, what still swings beside the cell
-/// would stay in.
+/// Most readings from the largest one on in which a fit may begin.
+constexpr std::size_t kMostScans = 1024;
+/// Standard errors of the variance of the residuals up to which they count as noise. One fit in six of noise
+/// alone exceeds it, and the next one begins later. A larger limit would let in what swings beside the cell.
 constexpr double kNoiseErrors = 1.0;
 /// Fewest oscillations until the noise hides them: fewer may be the end of a push.
 constexpr double kFewestOscillations = 1.5;
@@ -160,12 +163,20 @@ struct Knock {
   std::size_t end = 0;
 };
 
-std::vector<Knock> knocks_in(std::span<const double> values, double level, double threshold) {
+/// \param quiet  readings below the threshold that end a tap.
+std::vector<Knock> knocks_in(std::span<const double> values, double threshold, std::size_t quiet) {
+  std::vector<double> first{values.begin(),
+                            values.begin() + static_cast<std::ptrdiff_t>(std::min(quiet, values.size()))};
+  double level = signal::median(first);  // Before the tap: it may drift.
   std::vector<Knock> knocks;
   for (std::size_t k = 0; k < values.size(); ++k) {
     const double off = std::abs(values[k] - level);
-    if (!(off > threshold)) continue;
-    if (knocks.empty() || k > knocks.back().last + kQuietScans) {
+    const bool is_quiet = knocks.empty() || k > knocks.back().last + quiet;
+    if (!(off > threshold)) {
+      if (is_quiet) level += (values[k] - level) / static_cast<double>(quiet);
+      continue;
+    }
+    if (is_quiet) {
       if (!knocks.empty()) knocks.back().end = k;
       knocks.push_back({k, k, k, values.size()});
     }
@@ -174,11 +185,43 @@ std::vector<Knock> knocks_in(std::span<const double> values, double level, doubl
     if (off > std::abs(values[knock.peak] - level)) knock.peak = k;
   }
   for (Knock& knock : knocks) {
-    knock.last = std::min(knock.last, knock.peak + kMostScans / 2);
+    knock.last = std::min(knock.last, knock.peak + kMostScans);
     // As long again as it is seen: there is the rest of it, and the level.
-    knock.end = std::min(knock.end, knock.last + (knock.last - knock.peak) + kQuietScans);
+    knock.end = std::min(knock.end, knock.last + (knock.last - knock.peak) + quiet);
   }
   return knocks;
+}
+
+/// Noise of a reading outside the taps, at least the floor.
+/// \param share  of the blocks of readings that have less noise.
+double noise_outside(std::span<const double> values, const std::vector<Knock>& knocks, double share,
+                     double floor) {
+  signal::FourthDifferences differences;
+  std::vector<double> medians;
+  auto next = knocks.begin();
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (next != knocks.end() && k == next->first) {
+      differences.gap();
+      k = next->end - 1;
+      ++next;
+    } else if (differences.add(values[k])) {
+      medians.push_back(signal::block_median(differences.block(), medians.empty() ? 0.0 : medians.back()));
+    }
+  }
+  if (medians.empty()) return floor;
+  const auto at = medians.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(medians.size()));
+  std::ranges::nth_element(medians, at);
+  return std::max(floor, signal::sigma_of_median(*at));
+}
+
+/// Means of so many neighbours each.
+std::vector<double> averaged(std::span<const double> values, std::size_t count) {
+  std::vector<double> means;
+  for (std::size_t k = 0; k + count <= values.size(); k += count) {
+    const std::span<const double> own = values.subspan(k, count);
+    means.push_back(std::accumulate(own.begin(), own.end(), 0.0) / static_cast<double>(count));
+  }
+  return means;
 }
 
 TesterEstimate ring_of(const RingFit& fit, double scan_rate_Hz) {
@@ -193,24 +236,27 @@ TesterEstimate ring_of(const RingFit& fit, double scan_rate_Hz) {
 
 }  // namespace
 
-Taps find_taps(std::span<const double> values, double scan_rate_Hz) {
+Taps find_taps(std::span<const double> readings, double scan_rate_Hz) {
+  const auto together = static_cast<std::size_t>(std::max(std::floor(scan_rate_Hz / kHighestRate_Hz), 1.0));
+  const std::vector<double> means = together > 1 ? averaged(readings, together) : std::vector<double>{};
+  const std::span<const double> values = together > 1 ? std::span{means} : readings;
+  const double rate_Hz = scan_rate_Hz / static_cast<double>(together);
   Taps found;
   if (values.size() < kFewestScans) return found;
-  std::vector<double> sorted{values.begin(), values.end()};
-  const double level = signal::median(sorted);
-  std::ranges::transform(values, sorted.begin(), [&](double value) { return std::abs(value - level); });
-  constexpr double kSigmaOfMedian = 1.4826;  // Of a normal distribution, from the median of its size.
-  // A quiet converter shows one value: its noise is then at least that of rounding the smallest reading.
-  const double smallest = *std::ranges::min_element(
-      sorted, {}, [](double off) { return off > 0.0 ? off : std::numeric_limits<double>::infinity(); });
-  const double sigma = std::max(kSigmaOfMedian * signal::median(sorted), smallest / std::sqrt(12.0));
-  for (const Knock& knock : knocks_in(values, level, kTapSigmas * sigma)) {
-    const double at_s = static_cast<double>(knock.peak) / scan_rate_Hz;
+  // The first quarter of the blocks knows of no tap; then those outside them tell the noise.
+  const double rounding = signal::smallest_step(values) / std::sqrt(12.0);
+  const auto quiet = static_cast<std::size_t>(std::ceil(kQuiet_s * rate_Hz));
+  const double roughly = noise_outside(values, {}, 0.25, rounding);
+  const std::vector<Knock> knocks = knocks_in(values, kTapSigmas * roughly, quiet);
+  const double sigma = std::max(roughly, noise_outside(values, knocks, 0.5, rounding));
+  for (const Knock& knock : knocks) {
+    const double at_s = static_cast<double>(knock.peak) / rate_Hz;
     const auto from = [&](std::size_t first) { return values.subspan(first, knock.end - first); };
     const RingState guess = first_guess(from(knock.peak + (knock.last - knock.peak) / 2));
-    // What taps the cell leaves it later than at the peak.
+    // The contact may last beyond the peak: the fit begins later, until its residuals are noise.
+    const auto step = static_cast<std::size_t>(std::max(std::numbers::pi / 4.0 / guess[3], 1.0));
     std::optional<RingFit> fit;
-    for (std::size_t first = knock.peak; first <= knock.last; ++first) {
+    for (std::size_t first = knock.peak; first <= knock.last; first += step) {
       fit = fit_ring(from(first), sigma, guess);
       if (fit && fit->describes(sigma)) break;
     }
@@ -221,7 +267,7 @@ Taps find_taps(std::span<const double> values, double scan_rate_Hz) {
       found.refused.push_back(
           {at_s, "too little is seen of the oscillation; tap harder, or take more scans a second"});
     } else {
-      found.taps.push_back({at_s, ring_of(*fit, scan_rate_Hz)});
+      found.taps.push_back({at_s, ring_of(*fit, rate_Hz)});
     }
   }
   return found;

@@ -260,6 +260,7 @@ TestResults TestAnalysis::finish() {
                                                  : Estimate::of(static_cast<double>(spikes_.size()));
   if (trace.size() < signal::kFewestScansForNoise) {
     too_short(trace.size(), results);
+    no_bootstrap(results.regime_reason);
     return results;
   }
   const double sigma = signal::scan_noise(trace.value, noise_floor(trace.value, settings_.step_coefficient));
@@ -299,6 +300,7 @@ TestResults TestAnalysis::finish() {
     no_model_results("no slip", results);
     results.rung_reason = "no slip";
     results.misfit = results.mu_slope = Estimate::none("no slip");
+    no_bootstrap("no slip");
   } else {
     const bool is_fitted = fits_whole_test() && slack.count == 0;
     const std::string why_no_K = slack.count > 0 ? why_slack(slack.count, slips.size()) : "";
@@ -373,7 +375,7 @@ TestResults TestAnalysis::finish() {
                              "the load cell and filter that are stated are not taken off the trace: S and K "
                              "are as read"));
     }
-    if (settings_.bootstrap.count > 0) bootstrap_ = bootstrap_of(trace, sigma, estimates);
+    draw_slips_again(trace, sigma, estimates);
     results.mu_slope = mu_slope(trace, slips, sigma, estimates);
     if (fits_whole_test() && estimates.model_describes) speed_results(trace, estimates, results);
     if (verdict.transition_slip) {
@@ -396,6 +398,7 @@ TestResults TestAnalysis::finish() {
   if (check.voids()) {
     tester_.reset();
     tester_check_.reset();
+    no_bootstrap("the signal voids the results");
   }
   add_signal_findings(check, trace.size(), results);
   return results;
@@ -617,17 +620,23 @@ Estimate TestAnalysis::mu_slope(const estimate::Trace& trace, const base::LongCo
                   kParts, *parts[0].value, *parts[1].value, *parts[2].value, probability));
 }
 
-Bootstrap TestAnalysis::bootstrap_of(const estimate::Trace& trace, double sigma,
-                                     const TestEstimates& estimates) const {
-  if (fits_whole_test() && estimates.model_describes && estimates.section)
-    return bootstrap_slips(trace, *estimates.section, sigma, estimates.prior, settings_.bootstrap);
-  Bootstrap none;
-  none.settings = settings_.bootstrap;
-  none.reason = !estimates.rung_reason.empty() && !estimates.model_describes
-                    ? "no fit describes the test: " + estimates.rung_reason
-                : fits_whole_test() ? fmt::format("the test has more than {} slips", kMostSlipsTogether)
-                                    : "turning points are no fit: --estimator fit";
-  return none;
+void TestAnalysis::no_bootstrap(std::string reason) {
+  if (settings_.bootstrap.count == 0) return;
+  bootstrap_ = Bootstrap{};
+  bootstrap_->settings = settings_.bootstrap;
+  bootstrap_->reason = std::move(reason);
+}
+
+void TestAnalysis::draw_slips_again(const estimate::Trace& trace, double sigma,
+                                    const TestEstimates& estimates) {
+  if (settings_.bootstrap.count == 0) return;
+  if (!fits_whole_test()) return no_bootstrap("turning points are no fit: --estimator fit");
+  if (!estimates.model_describes) return no_bootstrap("no fit describes the test: " + estimates.rung_reason);
+  if (transducer_is_off_)
+    return no_bootstrap("load cell and filter are taken off: the drawings would not show their uncertainty");
+  if (!estimates.section)
+    return no_bootstrap(fmt::format("the test has more than {} slips", kMostSlipsTogether));
+  bootstrap_ = bootstrap_slips(trace, *estimates.section, sigma, estimates.prior, settings_.bootstrap);
 }
 
 void TestAnalysis::speed_results(const estimate::Trace& trace, const TestEstimates& estimates,

@@ -108,8 +108,8 @@ class TestAnalysis {
   /// After finish(): check against settings.prior.coupling; nullopt without it, without tester(), or if the
   /// fit with that prior did not converge.
   [[nodiscard]] const std::optional<TesterCheck>& tester_check() const noexcept { return tester_check_; }
-  /// After finish(): how the results scatter if the slips are drawn again; nullopt unless
-  /// settings.bootstrap.count > 0.
+  /// After finish(): how the results scatter if the slips are drawn again, or why that is not told; nullopt
+  /// unless settings.bootstrap.count > 0.
   [[nodiscard]] const std::optional<Bootstrap>& bootstrap() const noexcept { return bootstrap_; }
   /// After finish(): scans that were found to be spikes.
   [[nodiscard]] const std::vector<base::ScanIndex>& spikes() const noexcept { return spikes_; }
@@ -158,8 +158,8 @@ class TestAnalysis {
   /// μ′ of the paper over that of the characterisation, from the damping that the test alone has.
   [[nodiscard]] Estimate mu_slope(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
                                   double sigma, const TestEstimates& estimates) const;
-  [[nodiscard]] Bootstrap bootstrap_of(const estimate::Trace& trace, double sigma,
-                                       const TestEstimates& estimates) const;
+  void no_bootstrap(std::string reason);
+  void draw_slips_again(const estimate::Trace& trace, double sigma, const TestEstimates& estimates);
   /// Fills pull_speed_measured, from the stick rate and ω₀, or tells why it has no value; adds the findings
   /// of tester_check_, or kPullSpeed without it. If the sled may never have stuck, S and S − K become absent,
   /// too. \param results  with K already.

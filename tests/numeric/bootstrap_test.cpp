@@ -6,7 +6,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
+#include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/analysis/test_analysis.hpp"
 #include "core/sim/scene_run.hpp"
@@ -26,22 +29,30 @@ struct Drawn {
 };
 
 Drawn analysed(const sim::Scene& scene, std::uint64_t seed, const BootstrapSettings& settings,
-               detect::EstimatorTier estimator = detect::EstimatorTier::kFit) {
+               detect::EstimatorTier estimator = detect::EstimatorTier::kFit,
+               const estimate::SharedPrior& prior = {}, base::ScanIndex frozen_scans = 0) {
   sim::SceneRun run{scene, scene.scan_rate_Hz};
   run.restart(seed);
   AnalysisSettings analysis_settings;
   analysis_settings.live = false;
   analysis_settings.estimator = estimator;
   analysis_settings.bootstrap = settings;
+  analysis_settings.prior = prior;
   TestAnalysis analysis{analysis_settings};
   const auto pull_end =
       static_cast<base::ScanIndex>((0.5 + test::ScatterTrials::kPull_s) * scene.scan_rate_Hz);
   std::array<double, 64> raw{};
   base::ScanIndex index = 0;
+  double value = 0.0;
   while (const std::size_t count = run.next(raw)) {
-    for (std::size_t k = 0; k < count && index < pull_end; ++k, ++index) analysis.add(index, raw[k], false);
+    for (std::size_t k = 0; k < count && index < pull_end; ++k, ++index) {
+      constexpr base::ScanIndex kFreezes = 500;
+      if (index < kFreezes || index >= kFreezes + frozen_scans) value = raw[k];
+      analysis.add(index, value, false);
+    }
   }
   Drawn drawn{analysis.finish(), {}};
+  EXPECT_EQ(analysis.bootstrap().has_value(), settings.count > 0);
   drawn.bootstrap = analysis.bootstrap().value_or(Bootstrap{});
   return drawn;
 }
@@ -76,6 +87,28 @@ TEST(Bootstrap, ScattersAsTheResultsAreOff) {
   }
 }
 
+TEST(Bootstrap, HasTheDriftInSAndKAsTheResults) {
+  sim::Scene drifting = scene(false);
+  drifting.kinetic_drift = sim::KineticDrift{0.002};
+  const Drawn drawn = analysed(drifting, 1, {.count = 200});
+  ASSERT_EQ(drawn.bootstrap.reason, "");
+  ASSERT_TRUE(drawn.results.drift_rate.value && *drawn.results.drift_rate.value > 0.001);
+  for (const auto& [name, result] : {std::pair{"mu_s", drawn.results.mu_s}, {"mu_k", drawn.results.mu_k}}) {
+    EXPECT_LT(drawn.spread(name).lowest, *result.value) << name;
+    EXPECT_GT(drawn.spread(name).highest, *result.value) << name;
+  }
+}
+
+// With a characterised tester the scatter of its damping is that of the characterisation.
+TEST(Bootstrap, DrawsThePriorToo) {
+  estimate::SharedPrior prior;
+  const double omega = 2.0 * std::numbers::pi * 20.0;
+  prior.coupling = {omega, 0.022, Eigen::Vector2d{1e-4, 1e-8}.asDiagonal()};
+  const Drawn drawn = analysed(scene(true), 1, {.count = 400}, detect::EstimatorTier::kFit, prior);
+  ASSERT_EQ(drawn.bootstrap.reason, "");
+  EXPECT_NEAR(drawn.spread("gamma_over_2omega").standard_deviation, 1e-4, 2e-5);
+}
+
 TEST(Bootstrap, OfOneSeedIsTheSameEachTime) {
   const BootstrapSettings settings{.count = 100, .seed = 7};
   const Bootstrap one = analysed(scene(true), 1, settings).bootstrap;
@@ -93,11 +126,15 @@ TEST(Bootstrap, LeavesTheResultsAsTheyAreAndSaysWhyThereIsNone) {
   const Drawn without = analysed(scene(true), 1, {});
   EXPECT_EQ(with.results.delta_mu.value, without.results.delta_mu.value);
   EXPECT_EQ(with.results.delta_mu.standard_error, without.results.delta_mu.standard_error);
-  EXPECT_EQ(without.bootstrap.settings.count, 0U);
   const Drawn by_turning_points =
       analysed(scene(true), 1, {.count = 100}, detect::EstimatorTier::kTurningPoints);
   EXPECT_TRUE(by_turning_points.bootstrap.spreads.empty());
   EXPECT_NE(by_turning_points.bootstrap.reason.find("turning points"), std::string::npos);
+  // A value that stands still voids the results, and with them their scatter.
+  const Drawn frozen = analysed(scene(true), 1, {.count = 100}, detect::EstimatorTier::kFit, {}, 60);
+  EXPECT_FALSE(frozen.results.delta_mu.value);
+  EXPECT_TRUE(frozen.bootstrap.spreads.empty());
+  EXPECT_NE(frozen.bootstrap.reason, "");
 }
 
 }  // namespace
