@@ -195,6 +195,26 @@ class TableReader {
                              other_heading_line_, other_heading_);
   }
 
+  /// The column, and what stands in it, for which this is no row of scans. \param no_time  the time is text.
+  [[nodiscard]] std::string wrong_cell(const std::vector<std::string_view>& fields, bool no_time) const {
+    std::size_t wrong = value_column_;
+    const auto is_text = [&](std::size_t c) { return cells_[c].kind == CellKind::kText; };
+    if (wrong >= fields.size() ||
+        cell(wrong, dialect_.content(wrong, fields[wrong])).kind != CellKind::kText) {
+      if (no_time) wrong = *time_column_;
+      for (std::size_t c = 0; !no_time && c < fields.size() && wrong == value_column_; ++c) {
+        if (c >= dialect_.columns.size() ? cells_[c].kind == CellKind::kNumber
+                                         : dialect_.numeric[c] && is_text(c))
+          wrong = c;
+      }
+    }
+    const std::string text =
+        base::one_line(trimmed(dialect_.content(wrong, field(fields, wrong))), kLongestShown);
+    return wrong < dialect_.columns.size() ? fmt::format("{} is '{}'", column_shown(wrong), text)
+                                           : fmt::format("there is '{}' in column {}, and the table has {}",
+                                                         text, wrong + 1, dialect_.columns.size());
+  }
+
   [[nodiscard]] std::string column_shown(std::size_t column) const {
     const std::string& text = dialect_.columns[column].text;
     return text.empty() ? fmt::format("column {}", column + 1)
@@ -361,11 +381,7 @@ class TableReader {
         other_heading_line_ = line;
         below_heading_ = false;
       }
-      const bool value_is_wrong = value.kind == CellKind::kText;
-      strange(
-          line,
-          fmt::format("{} is '{}'", column_shown(value_is_wrong || !no_time ? value_column_ : *time_column_),
-                      base::one_line(value_is_wrong || !no_time ? value_text : time_text, kLongestShown)));
+      strange(line, wrong_cell(fields, no_time && !time_is_hole));
       return {};
     }
     const bool hole = value.kind != CellKind::kNumber;

@@ -134,6 +134,15 @@ TEST_F(TraceImport, TextBetweenScansIsRefused) {
                  ":7: column 'F' is 'abc', and scans follow in line 8");
 }
 
+TEST_F(TraceImport, TheCellThatIsNoNumberIsShown) {
+  expect_refused("t (s),T,F\n0.00,5,1\n0.01,5,1\n0.02,5,1\n0.03,ERR,1\n0.04,5,1\n0.05,5,1\n",
+                 ":5: column 'T' is 'ERR', and scans follow in line 6");
+  std::string wider = "t (s),F\n" + rows(0, 150);
+  for (int i = 150; i < 300; ++i) wider += fmt::format("{:.2f},7,{}\n", 0.01 * i, i);
+  expect_refused(wider,
+                 ":152: there is '150' in column 3, and the table has 2, and the 150 lines from there");
+}
+
 TEST_F(TraceImport, LongTablesAreReadInPiecesThatDoNotShow) {
   expect_values("t (s),F\n" + rows(0, 40'000) + "\"400.00\",\"40001\n\"\n", values(40'001));
   expect_refused("t (s),F\n" + rows(0, 20'000) + "event,x\n" + rows(20'000, 40'000),
