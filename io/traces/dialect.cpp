@@ -332,6 +332,27 @@ std::string shown(const Reading& reading) {
   return text;
 }
 
+/// Rows above the table with the other decimal mark are no preamble: the mark changed within the file.
+base::Result<void> refuse_other_mark(const Reading& reading, const std::string& path) {
+  Dialect other = reading.dialect;
+  other.decimal = reading.dialect.decimal == '.' ? ',' : '.';
+  const Row* first = nullptr;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < reading.first; ++i) {
+    const Row& row = reading.rows[i];
+    if (row.fields.size() < other.columns.size() || is_scans(row, reading.dialect) || !is_scans(row, other))
+      continue;
+    if (count++ == 0) first = &row;
+  }
+  if (count < kFewerRows) return {};
+  const std::int64_t below = reading.dialect.first_row_line;
+  return base::usage_error(
+      "{}:{}: \"{}\" is a row with the decimal mark '{}', and rows from line {} on have '{}': "
+      "write one mark in the whole file, or give --skip {} if the lines above that one are no scans",
+      path, first->line, base::one_line(fmt::format("{}", fmt::join(first->fields, " ")), 40), other.decimal,
+      below, reading.dialect.decimal, below - 1);
+}
+
 /// The cells of a row that are not empty.
 std::vector<Cell> cells_of(const Row& row, char decimal) {
   std::vector<Cell> cells;
@@ -513,6 +534,7 @@ base::Result<Dialect> recognise(const Source& source, const DialectOptions& opti
         base::one_line(head->lines[static_cast<std::size_t>(one.dialect.first_row_line) - 1], 40), shown(one),
         option_of(one, other), shown(other), option_of(other, one));
   }
+  if (auto clear = refuse_other_mark(readings.front(), path); !clear) return tl::unexpected(clear.error());
   readings.front().dialect.decimal_is_stated = options.decimal.has_value();
   return readings.front().dialect;
 }

@@ -114,6 +114,20 @@ TEST_F(TraceDialect, TwoDecimalMarksInOneColumnAreRefused) {
   expect_values("t\tF\n0.00\t0.123\n0.01\t6,944.000\n", {0.123, 6944.0});
 }
 
+// The first half is no preamble.
+TEST_F(TraceDialect, ADecimalMarkThatChangesIsRefused) {
+  std::string content = "t;F\n";
+  for (int i = 0; i < 40; ++i)
+    content += fmt::format("1{0}{1:03};0{0}{2:04}\n", i < 20 ? ',' : '.', 10 * i, 7 * i);
+  expect_refused(
+      content,
+      ":2: \"1,000 0,0000\" is a row with the decimal mark ',', and rows from line 22 on have '.': "
+      "write one mark in the whole file, or give --skip 21");
+  request_.dialect.skip = 21;
+  request_.column = "2";
+  ASSERT_TRUE(import(content));
+}
+
 TEST_F(TraceDialect, InspectionShowsClockTimes) {
   test::write_content(request_.path, "Clock,F\n12:00:00.00,1\n12:00:00.01,2\n12:01:02.50,3\n");
   auto text = inspect(request_);
