@@ -506,11 +506,18 @@ base::Result<Dialect> recognise(const Source& source, const DialectOptions& opti
     }
   }
   if (readings.empty()) {
+    // Words may stand above the table.
+    const auto& lines = head->lines;
+    const auto skipped = lines.begin() + std::min<std::ptrdiff_t>(stated.skip, std::ssize(lines));
+    auto sample = std::find_if(skipped, lines.end(), [](const std::string& line) {
+      return !is_no_row(line) && line.find_first_of("0123456789") != std::string::npos;
+    });
+    if (sample == lines.end()) sample = lines.begin();
     return base::usage_error(
-        "{}: no table of numbers is found in its first {} lines. Look at it, and state what you see: "
-        "--encoding, "
-        "--separator, --decimal, --skip",
-        path, head->lines.size());
+        "{}:{}: no table of numbers is found in its first {} lines; this one cannot be read: \"{}\". "
+        "State what you see, --encoding, --separator, --decimal, --skip, or export the trace as a table of "
+        "text (CSV)",
+        path, sample - lines.begin() + 1, lines.size(), base::one_line(*sample, 60));
   }
   const std::size_t fewest =
       std::min_element(readings.begin(), readings.end(), [](const Reading& a, const Reading& b) {

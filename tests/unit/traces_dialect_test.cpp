@@ -167,7 +167,10 @@ TEST_F(TraceDialect, QuotedThousandsOrDecimalsAreTwoReadings) {
 
 TEST_F(TraceDialect, RefusesWhatIsNoTable) {
   expect_refused("", "is empty");
-  expect_refused("F\n", "no table of numbers");
+  expect_refused("F\n", ":1: no table of numbers");
+  expect_refused("Run\n<td>0.5</td>\n<td>0.6</td>\n",
+                 ":2: no table of numbers is found in its first 3 lines; "
+                 "this one cannot be read: \"<td>0.5</td>\"");
   expect_refused("a,b\n1,2\n2,3\n", ":1: there is no column \"F\"; there are 1 \"a\", 2 \"b\"");
   expect_refused("F,F\n1,2\n2,3\n", "columns 1 and 2 are both called \"F\"");
   expect_refused("PK\x03\x04", "Excel");
