@@ -319,10 +319,10 @@ std::optional<Reading> read_as(const Head& head, char separator, char decimal, s
   return reading;
 }
 
-/// The numbers of the first row, for a message.
-std::string shown(const Reading& reading) {
+/// The numbers of a row, for a message.
+std::string shown(const Reading& reading, std::size_t place) {
   std::string text;
-  const Row& row = reading.rows[reading.first];
+  const Row& row = reading.rows[place];
   for (std::size_t c = 0; c < row.fields.size() && c < 4; ++c) {
     const Cell cell = read_cell(reading.dialect.content(c, row.fields[c]), reading.dialect.decimal);
     if (!text.empty()) text += " and ";
@@ -535,11 +535,22 @@ base::Result<Dialect> recognise(const Source& source, const DialectOptions& opti
   if (readings.size() > 1) {
     const Reading& one = readings[0];
     const Reading& other = readings[1];
+    // The first line that shows what differs.
+    std::size_t i = one.first;
+    std::size_t j = other.first;
+    while (i + 1 < one.rows.size() && j + 1 < other.rows.size() &&
+           (one.rows[i].line != other.rows[j].line || shown(one, i) == shown(other, j)))
+      ++(one.rows[i].line <= other.rows[j].line ? i : j);
+    const bool differs = one.rows[i].line == other.rows[j].line && shown(one, i) != shown(other, j);
+    if (!differs) {
+      i = one.first;
+      j = other.first;
+    }
+    const std::int64_t line = one.rows[i].line;
     return base::usage_error(
-        "{}:{}: \"{}\" has two readings: {} ({}), or {} ({}). Give the option that is right", path,
-        one.dialect.first_row_line,
-        base::one_line(head->lines[static_cast<std::size_t>(one.dialect.first_row_line) - 1], 40), shown(one),
-        option_of(one, other), shown(other), option_of(other, one));
+        "{}:{}: \"{}\" has two readings: {} ({}), or {} ({}). Give the option that is right", path, line,
+        base::one_line(head->lines[static_cast<std::size_t>(line) - 1], 40), shown(one, i),
+        option_of(one, other), shown(other, j), option_of(other, one));
   }
   if (auto clear = refuse_other_mark(readings.front(), path); !clear) return tl::unexpected(clear.error());
   readings.front().dialect.decimal_is_stated = options.decimal.has_value();

@@ -160,6 +160,11 @@ TEST_F(TraceDialect, TwoReadingsAreShownWithTheOptionsThatDecide) {
   expect_values(content, {1.25, 2.5});
 }
 
+TEST_F(TraceDialect, TwoReadingsAreShownWhereTheyDiffer) {
+  expect_refused("t;F\n0;16\n10;38\n1.000;41\n1.010;42\n",
+                 ":4: \"1.000;41\" has two readings: 1 and 41 (--decimal \".\"), or 1000 and 41");
+}
+
 // A heading with commas tells the separator, not what "1.000" means.
 TEST_F(TraceDialect, QuotedThousandsOrDecimalsAreTwoReadings) {
   expect_refused("Time,F\n\"0\",\"1.250\"\n\"10\",\"2.500\"\n", "has two readings: 0 and 1.25");
