@@ -130,7 +130,10 @@ Digits digits_in(std::string_view text, char decimal) {
       break;
     }
   }
-  if (at < text.size() && (text[at] == 'e' || text[at] == 'E')) {
+  // Fortran writes doubles as 1.0D+02, always with point and sign.
+  const bool fortran = point && at + 1 < text.size() && (text[at] == 'd' || text[at] == 'D') &&
+                       (text[at + 1] == '+' || text[at + 1] == '-');
+  if (at < text.size() && (text[at] == 'e' || text[at] == 'E' || fortran)) {
     std::size_t end = at + 1;
     if (end < text.size() && (text[end] == '+' || text[end] == '-')) ++end;
     if (end < text.size() && is_digit(text[end])) {

@@ -32,6 +32,9 @@ TEST(TraceCell, NumbersHaveSignsExponentsAndBothDecimalMarks) {
             -0.5);
   EXPECT_EQ(number("1,234E+01", ','), 12.34);
   EXPECT_EQ(number(".5"), 0.5);
+  EXPECT_EQ(number("-1.5D+02"), -150.0);
+  EXPECT_EQ(number("1.0d-01"), 0.1);
+  EXPECT_EQ(kind("12D4"), CellKind::kText);
 }
 
 TEST(TraceCell, ThousandsAreMarkedAsEachLanguageMarksThem) {
