@@ -376,6 +376,12 @@ class TableReader {
       time_is_hole = no_time && number.kind != CellKind::kText;
     }
     if (value.kind == CellKind::kText || (no_time && !time_is_hole) || !dialect_.is_row(cells_)) {
+      if (strange_rows_ == 0) {
+        words_alone_ = dialect_.columns.size() > 1 &&
+                       std::none_of(fields.begin(), fields.end(), [&](std::string_view text) {
+                         return read_cell(text, dialect_.decimal).kind == CellKind::kNumber;
+                       });
+      }
       if (other_heading_line_ == 0) other_heading_ = change_of_heading(fields);
       if (other_heading_line_ == 0 && !other_heading_.empty()) {
         other_heading_line_ = line;
@@ -389,8 +395,10 @@ class TableReader {
     if (other_heading_line_ > 0) return other_heading();
     if (strange_rows_ > 0) {
       return base::usage_error(
-          "{}:{}: {}, and scans follow in line {}: a number is needed there; correct the line or remove it",
-          path_, strange_line_, strange_what_, line);
+          "{}:{}: {}, and scans follow in line {}: a number is needed there; correct the line, or remove "
+          "it{}",
+          path_, strange_line_, strange_what_, line,
+          words_alone_ ? " and those below it if they are no scans" : "");
     }
     if (no_time) {
       return base::usage_error(
@@ -507,6 +515,7 @@ class TableReader {
   std::size_t strange_rows_ = 0;  ///< That are no scans, since the last scan.
   std::int64_t strange_line_ = 0;
   std::string strange_what_;
+  bool words_alone_ = false;             ///< No number stands there: maybe the heading of a table of results.
   bool below_heading_ = false;           ///< The heading stands again since the last scan.
   std::int64_t other_heading_line_ = 0;  ///< Of one that differs, since the last scan; 0: none.
   std::string other_heading_;            ///< What differs.

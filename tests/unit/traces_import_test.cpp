@@ -130,8 +130,12 @@ TEST_F(TraceImport, EventsInTheLastRowsAreScans) {
 }
 
 TEST_F(TraceImport, TextBetweenScansIsRefused) {
-  expect_refused("t (s),F\n" + rows(0, 5) + "0.05,abc\n" + rows(6, 9),
-                 ":7: column 'F' is 'abc', and scans follow in line 8");
+  expect_refused(
+      "t (s),F\n" + rows(0, 5) + "0.05,abc\n" + rows(6, 9),
+      ":7: column 'F' is 'abc', and scans follow in line 8: a number is needed there; correct the line, "
+      "or remove it");
+  expect_refused("t (s),F\n" + rows(0, 5) + "\nSlip,Peak\n1,8\n2,9\n",
+                 "correct the line, or remove it and those below it if they are no scans");
 }
 
 TEST_F(TraceImport, TheCellThatIsNoNumberIsShown) {
