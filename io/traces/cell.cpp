@@ -17,9 +17,15 @@ constexpr std::size_t kLongestNumber = 40;
 constexpr std::size_t kLongestUnit = 8;
 
 /// In lower case. Instruments write them for overload, no reading and no channel.
-constexpr std::array<std::string_view, 22> kHoles{
-    "nan", "-nan", "na",  "n/a",  "null", "none", "-",    "--",   "---",       "ovld",     "ovl",
-    "ol",  "+ol",  "-ol", "over", "****", "inf",  "+inf", "-inf", "-nan(ind)", "nan(ind)", "overload"};
+constexpr std::array<std::string_view, 30> kHoles{
+    "nan",       "-nan",     "na",        "n/a",          "null",          "none",
+    "-",         "--",       "---",       "ovld",         "ovl",           "ol",
+    "+ol",       "-ol",      "over",      "inf",          "+inf",          "-inf",
+    "-nan(ind)", "nan(ind)", "overload",  "infinity",     "+infinity",     "-infinity",
+    "overrange", "overflow", "underflow", "\xE2\x88\x9E", "+\xE2\x88\x9E", "-\xE2\x88\x9E"};
+/// Infinity and not a number in the numbers of instruments [SCPI-99, 7.2.1].
+constexpr double kScpiInfinity = 9.9e37;
+constexpr double kScpiNaN = 9.91e37;
 constexpr std::size_t kLongestHole = 9;
 /// Between groups of three digits, in any language.
 constexpr std::array<std::string_view, 6> kThousands{" ", kNoBreakSpace, kNarrowSpace, "\xE2\x80\x89",
@@ -28,6 +34,8 @@ constexpr std::array<std::string_view, 6> kThousands{" ", kNoBreakSpace, kNarrow
 bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 
 bool is_hole(std::string_view text) {
+  // A number that is wider than its field, in C and Fortran.
+  if (text.size() > 1 && text.find_first_not_of('*') == std::string_view::npos) return true;
   if (text.size() > kLongestHole) return false;
   // Errors of spreadsheets, "#DIV/0!", and of an old C library, "-1.#IND".
   if (text.starts_with('#') ||
@@ -122,7 +130,10 @@ Digits digits_in(std::string_view text, char decimal) {
       break;
     }
   }
-  if (at < text.size() && (text[at] == 'e' || text[at] == 'E')) {
+  // Fortran writes doubles as 1.0D+02, always with point and sign.
+  const bool fortran = point && at + 1 < text.size() && (text[at] == 'd' || text[at] == 'D') &&
+                       (text[at + 1] == '+' || text[at + 1] == '-');
+  if (at < text.size() && (text[at] == 'e' || text[at] == 'E' || fortran)) {
     std::size_t end = at + 1;
     if (end < text.size() && (text[end] == '+' || text[end] == '-')) ++end;
     if (end < text.size() && is_digit(text[end])) {
@@ -177,6 +188,10 @@ Cell read_cell(std::string_view text, char decimal) {
   if (rest.size() > kLongestUnit || std::any_of(rest.begin(), rest.end(), is_digit) ||
       rest.find_first_of(",.;:-") != std::string_view::npos ||
       std::any_of(rest.begin(), rest.end(), [](unsigned char c) { return c < ' '; })) {
+    return cell;
+  }
+  if (std::abs(value) == kScpiInfinity || std::abs(value) == kScpiNaN) {
+    cell.kind = CellKind::kHole;
     return cell;
   }
   cell.kind = CellKind::kNumber;

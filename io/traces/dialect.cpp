@@ -319,10 +319,10 @@ std::optional<Reading> read_as(const Head& head, char separator, char decimal, s
   return reading;
 }
 
-/// The numbers of the first row, for a message.
-std::string shown(const Reading& reading) {
+/// The numbers of a row, for a message.
+std::string shown(const Reading& reading, std::size_t place) {
   std::string text;
-  const Row& row = reading.rows[reading.first];
+  const Row& row = reading.rows[place];
   for (std::size_t c = 0; c < row.fields.size() && c < 4; ++c) {
     const Cell cell = read_cell(reading.dialect.content(c, row.fields[c]), reading.dialect.decimal);
     if (!text.empty()) text += " and ";
@@ -330,6 +330,27 @@ std::string shown(const Reading& reading) {
                                            : fmt::format("\"{}\"", base::one_line(row.fields[c], 20));
   }
   return text;
+}
+
+/// Rows above the table with the other decimal mark are no preamble: the mark changed within the file.
+base::Result<void> refuse_other_mark(const Reading& reading, const std::string& path) {
+  Dialect other = reading.dialect;
+  other.decimal = reading.dialect.decimal == '.' ? ',' : '.';
+  const Row* first = nullptr;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < reading.first; ++i) {
+    const Row& row = reading.rows[i];
+    if (row.fields.size() < other.columns.size() || is_scans(row, reading.dialect) || !is_scans(row, other))
+      continue;
+    if (count++ == 0) first = &row;
+  }
+  if (count < kFewerRows) return {};
+  const std::int64_t below = reading.dialect.first_row_line;
+  return base::usage_error(
+      "{}:{}: \"{}\" is a row with the decimal mark '{}', and rows from line {} on have '{}': "
+      "write one mark in the whole file, or give --skip {} if the lines above that one are no scans",
+      path, first->line, base::one_line(fmt::format("{}", fmt::join(first->fields, " ")), 40), other.decimal,
+      below, reading.dialect.decimal, below - 1);
 }
 
 /// The cells of a row that are not empty.
@@ -485,11 +506,18 @@ base::Result<Dialect> recognise(const Source& source, const DialectOptions& opti
     }
   }
   if (readings.empty()) {
+    // Words may stand above the table.
+    const auto& lines = head->lines;
+    const auto skipped = lines.begin() + std::min<std::ptrdiff_t>(stated.skip, std::ssize(lines));
+    auto sample = std::find_if(skipped, lines.end(), [](const std::string& line) {
+      return !is_no_row(line) && line.find_first_of("0123456789") != std::string::npos;
+    });
+    if (sample == lines.end()) sample = lines.begin();
     return base::usage_error(
-        "{}: no table of numbers is found in its first {} lines. Look at it, and state what you see: "
-        "--encoding, "
-        "--separator, --decimal, --skip",
-        path, head->lines.size());
+        "{}:{}: no table of numbers is found in its first {} lines; this one cannot be read: \"{}\". "
+        "State what you see, --encoding, --separator, --decimal, --skip, or export the trace as a table of "
+        "text (CSV)",
+        path, sample - lines.begin() + 1, lines.size(), base::one_line(*sample, 60));
   }
   const std::size_t fewest =
       std::min_element(readings.begin(), readings.end(), [](const Reading& a, const Reading& b) {
@@ -507,12 +535,24 @@ base::Result<Dialect> recognise(const Source& source, const DialectOptions& opti
   if (readings.size() > 1) {
     const Reading& one = readings[0];
     const Reading& other = readings[1];
+    // The first line that shows what differs.
+    std::size_t i = one.first;
+    std::size_t j = other.first;
+    while (i + 1 < one.rows.size() && j + 1 < other.rows.size() &&
+           (one.rows[i].line != other.rows[j].line || shown(one, i) == shown(other, j)))
+      ++(one.rows[i].line <= other.rows[j].line ? i : j);
+    const bool differs = one.rows[i].line == other.rows[j].line && shown(one, i) != shown(other, j);
+    if (!differs) {
+      i = one.first;
+      j = other.first;
+    }
+    const std::int64_t line = one.rows[i].line;
     return base::usage_error(
-        "{}:{}: \"{}\" has two readings: {} ({}), or {} ({}). Give the option that is right", path,
-        one.dialect.first_row_line,
-        base::one_line(head->lines[static_cast<std::size_t>(one.dialect.first_row_line) - 1], 40), shown(one),
-        option_of(one, other), shown(other), option_of(other, one));
+        "{}:{}: \"{}\" has two readings: {} ({}), or {} ({}). Give the option that is right", path, line,
+        base::one_line(head->lines[static_cast<std::size_t>(line) - 1], 40), shown(one, i),
+        option_of(one, other), shown(other, j), option_of(other, one));
   }
+  if (auto clear = refuse_other_mark(readings.front(), path); !clear) return tl::unexpected(clear.error());
   readings.front().dialect.decimal_is_stated = options.decimal.has_value();
   return readings.front().dialect;
 }

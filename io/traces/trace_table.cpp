@@ -153,6 +153,7 @@ class TableReader {
                                strange_line_, strange_what_);
     }
     if (strange_rows_ > kLongestFooter && strange_rows_ > table_.value.size() / 10) {
+      if (other_heading_line_ > 0) return other_heading();
       return base::usage_error(
           "{}:{}: {}, and the {} lines from there to the end are like it: correct them or remove them", path_,
           strange_line_, strange_what_, strange_rows_);
@@ -186,6 +187,32 @@ class TableReader {
     table_.notes.push_back(fmt::format("{} line{} from line {} on left out: no scans", strange_rows_,
                                        strange_rows_ == 1 ? "" : "s", strange_line_));
     strange_rows_ = 0;
+    other_heading_line_ = 0;
+  }
+
+  [[nodiscard]] tl::unexpected<base::Error> other_heading() const {
+    return base::usage_error("{}:{}: {}: put this table, with its heading, into a file of its own", path_,
+                             other_heading_line_, other_heading_);
+  }
+
+  /// The column, and what stands in it, for which this is no row of scans. \param no_time  the time is text.
+  [[nodiscard]] std::string wrong_cell(const std::vector<std::string_view>& fields, bool no_time) const {
+    std::size_t wrong = value_column_;
+    const auto is_text = [&](std::size_t c) { return cells_[c].kind == CellKind::kText; };
+    if (wrong >= fields.size() ||
+        cell(wrong, dialect_.content(wrong, fields[wrong])).kind != CellKind::kText) {
+      if (no_time) wrong = *time_column_;
+      for (std::size_t c = 0; !no_time && c < fields.size() && wrong == value_column_; ++c) {
+        if (c >= dialect_.columns.size() ? cells_[c].kind == CellKind::kNumber
+                                         : dialect_.numeric[c] && is_text(c))
+          wrong = c;
+      }
+    }
+    const std::string text =
+        base::one_line(trimmed(dialect_.content(wrong, field(fields, wrong))), kLongestShown);
+    return wrong < dialect_.columns.size() ? fmt::format("{} is '{}'", column_shown(wrong), text)
+                                           : fmt::format("there is '{}' in column {}, and the table has {}",
+                                                         text, wrong + 1, dialect_.columns.size());
   }
 
   [[nodiscard]] std::string column_shown(std::size_t column) const {
@@ -194,9 +221,11 @@ class TableReader {
                         : fmt::format("column '{}'", base::one_line(text, kLongestShown));
   }
 
+  enum class Again { kNo, kHeading, kUnits };
+
   /// Whether this is the heading again, or the row of units.
-  [[nodiscard]] bool is_heading_again(const std::vector<std::string_view>& fields) const {
-    if (dialect_.header_line == 0) return false;
+  [[nodiscard]] Again heading_again(const std::vector<std::string_view>& fields) const {
+    if (dialect_.header_line == 0) return Again::kNo;
     bool same = true;
     bool units = dialect_.units_line > 0;
     for (std::size_t c = 0; c < dialect_.columns.size() && (same || units); ++c) {
@@ -205,9 +234,46 @@ class TableReader {
       const std::string& heading = dialect_.columns[c].text;
       same = same && trimmed(text).substr(0, 1) == std::string_view{heading}.substr(0, 1) &&
              column_name(text).text == heading;
-      units = units && (text.empty() || is_unit(text));
+      units = units &&
+              (text.empty() || (is_unit(text) && column_name("", text).unit == dialect_.columns[c].unit));
     }
-    return same || units;
+    return same ? Again::kHeading : units ? Again::kUnits : Again::kNo;
+  }
+
+  /// What differs in a row of words that is another heading, as it has a name of the first one or units
+  /// alone; empty of other rows.
+  [[nodiscard]] std::string change_of_heading(const std::vector<std::string_view>& fields) const {
+    // Between blanks a name may be several fields.
+    if (dialect_.header_line == 0 ||
+        (dialect_.separator == kBlanks && fields.size() != dialect_.columns.size()))
+      return {};
+    bool units = dialect_.units_line > 0;
+    bool named = false;
+    std::optional<std::size_t> other_name;
+    std::optional<std::size_t> other_unit;
+    for (std::size_t c = 0; c < fields.size(); ++c) {
+      const std::string_view text = trimmed(fields[c]);
+      if (read_cell(text, dialect_.decimal).kind == CellKind::kNumber) return {};
+      units = units && (text.empty() || is_unit(text));
+      const ColumnName name = column_name(text);
+      named = named || std::any_of(dialect_.columns.begin(), dialect_.columns.end(), [&](const auto& column) {
+                return !name.name.empty() && folded(column.name) == folded(name.name);
+              });
+      if (!other_name && (c >= dialect_.columns.size() || name.text != dialect_.columns[c].text))
+        other_name = c;
+      if (!other_unit && !text.empty() &&
+          (c >= dialect_.columns.size() || column_name("", text).unit != dialect_.columns[c].unit))
+        other_unit = c;
+    }
+    const auto other = units ? other_unit : other_name;
+    if (!(units || named) || !other) return {};
+    const std::string before = *other >= dialect_.columns.size() ? std::string{}
+                               : units                           ? dialect_.columns[*other].unit
+                                                                 : dialect_.columns[*other].text;
+    return fmt::format("another {}, with '{}' in column {} where line {} has '{}'",
+                       units ? "row of units" : "heading", base::one_line(fields[*other], kLongestShown),
+                       *other + 1, units ? dialect_.units_line : dialect_.header_line,
+                       base::one_line(before, kLongestShown));
   }
 
   /// All rows to the end of the file, or to an error.
@@ -288,9 +354,11 @@ class TableReader {
     if (std::all_of(fields.begin(), fields.end(),
                     [](std::string_view text) { return trimmed(text).empty(); }))
       return {};
-    if (is_heading_again(fields)) {
-      // Another table of the same kind begins; what stands between the two is no scan.
-      tell_left_out();
+    if (const Again again = heading_again(fields); again != Again::kNo) {
+      // Another table of the same kind begins; what stands between the two is no scan. Units alone do not
+      // tell what the columns are.
+      below_heading_ = below_heading_ || again == Again::kHeading;
+      if (below_heading_) tell_left_out();
       table_.notes.push_back(fmt::format("line {} left out: the heading or its units again", line));
       return {};
     }
@@ -308,19 +376,29 @@ class TableReader {
       time_is_hole = no_time && number.kind != CellKind::kText;
     }
     if (value.kind == CellKind::kText || (no_time && !time_is_hole) || !dialect_.is_row(cells_)) {
-      const bool value_is_wrong = value.kind == CellKind::kText;
-      strange(
-          line,
-          fmt::format("{} is '{}'", column_shown(value_is_wrong || !no_time ? value_column_ : *time_column_),
-                      base::one_line(value_is_wrong || !no_time ? value_text : time_text, kLongestShown)));
+      if (strange_rows_ == 0) {
+        words_alone_ = dialect_.columns.size() > 1 &&
+                       std::none_of(fields.begin(), fields.end(), [&](std::string_view text) {
+                         return read_cell(text, dialect_.decimal).kind == CellKind::kNumber;
+                       });
+      }
+      if (other_heading_line_ == 0) other_heading_ = change_of_heading(fields);
+      if (other_heading_line_ == 0 && !other_heading_.empty()) {
+        other_heading_line_ = line;
+        below_heading_ = false;
+      }
+      strange(line, wrong_cell(fields, no_time && !time_is_hole));
       return {};
     }
     const bool hole = value.kind != CellKind::kNumber;
     if (hole && no_time) return {};
+    if (other_heading_line_ > 0) return other_heading();
     if (strange_rows_ > 0) {
       return base::usage_error(
-          "{}:{}: {}, and scans follow in line {}: a number is needed there; correct the line or remove it",
-          path_, strange_line_, strange_what_, line);
+          "{}:{}: {}, and scans follow in line {}: a number is needed there; correct the line, or remove "
+          "it{}",
+          path_, strange_line_, strange_what_, line,
+          words_alone_ ? " and those below it if they are no scans" : "");
     }
     if (no_time) {
       return base::usage_error(
@@ -338,6 +416,7 @@ class TableReader {
       table_.cell_unit = value.unit;
       any_value_ = true;
     }
+    below_heading_ = false;
     note_label(fields);
     add(hole ? base::kNaN : value.value, time, line);
     // The last number of the line, which would be cut first.
@@ -436,6 +515,10 @@ class TableReader {
   std::size_t strange_rows_ = 0;  ///< That are no scans, since the last scan.
   std::int64_t strange_line_ = 0;
   std::string strange_what_;
+  bool words_alone_ = false;             ///< No number stands there: maybe the heading of a table of results.
+  bool below_heading_ = false;           ///< The heading stands again since the last scan.
+  std::int64_t other_heading_line_ = 0;  ///< Of one that differs, since the last scan; 0: none.
+  std::string other_heading_;            ///< What differs.
   bool any_value_ = false;
   std::span<const Cell> cells_;  ///< Of the row at hand.
   struct MarkPlace {

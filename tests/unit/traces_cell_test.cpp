@@ -32,6 +32,9 @@ TEST(TraceCell, NumbersHaveSignsExponentsAndBothDecimalMarks) {
             -0.5);
   EXPECT_EQ(number("1,234E+01", ','), 12.34);
   EXPECT_EQ(number(".5"), 0.5);
+  EXPECT_EQ(number("-1.5D+02"), -150.0);
+  EXPECT_EQ(number("1.0d-01"), 0.1);
+  EXPECT_EQ(kind("12D4"), CellKind::kText);
 }
 
 TEST(TraceCell, ThousandsAreMarkedAsEachLanguageMarksThem) {
@@ -57,9 +60,11 @@ TEST(TraceCell, GroupsThatAreNotOfThreeDigitsAreNoThousands) {
 
 TEST(TraceCell, MissingValuesAreHoles) {
   for (const std::string_view text :
-       {"NaN", "-nan", "#N/A", "#DIV/0!", "#WERT!", "-1.#IND", "OVLD", "+OL", "---"})
+       {"NaN", "-nan", "#N/A", "#DIV/0!", "#WERT!", "-1.#IND", "OVLD", "+OL", "---", "******", "Infinity",
+        "overrange", "\xE2\x88\x9E", "-\xE2\x88\x9E", "9.9E37", "+9.91000000E+37", "-9.900E+37"})
     EXPECT_EQ(kind(text), CellKind::kHole) << text;
   EXPECT_EQ(kind(" "), CellKind::kEmpty);
+  EXPECT_EQ(kind("9.92e37"), CellKind::kNumber);
 }
 
 TEST(TraceCell, UnitStandsBehindANumber) {

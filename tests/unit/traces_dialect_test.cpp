@@ -114,6 +114,20 @@ TEST_F(TraceDialect, TwoDecimalMarksInOneColumnAreRefused) {
   expect_values("t\tF\n0.00\t0.123\n0.01\t6,944.000\n", {0.123, 6944.0});
 }
 
+// The first half is no preamble.
+TEST_F(TraceDialect, ADecimalMarkThatChangesIsRefused) {
+  std::string content = "t;F\n";
+  for (int i = 0; i < 40; ++i)
+    content += fmt::format("1{0}{1:03};0{0}{2:04}\n", i < 20 ? ',' : '.', 10 * i, 7 * i);
+  expect_refused(
+      content,
+      ":2: \"1,000 0,0000\" is a row with the decimal mark ',', and rows from line 22 on have '.': "
+      "write one mark in the whole file, or give --skip 21");
+  request_.dialect.skip = 21;
+  request_.column = "2";
+  ASSERT_TRUE(import(content));
+}
+
 TEST_F(TraceDialect, InspectionShowsClockTimes) {
   test::write_content(request_.path, "Clock,F\n12:00:00.00,1\n12:00:00.01,2\n12:01:02.50,3\n");
   auto text = inspect(request_);
@@ -146,6 +160,11 @@ TEST_F(TraceDialect, TwoReadingsAreShownWithTheOptionsThatDecide) {
   expect_values(content, {1.25, 2.5});
 }
 
+TEST_F(TraceDialect, TwoReadingsAreShownWhereTheyDiffer) {
+  expect_refused("t;F\n0;16\n10;38\n1.000;41\n1.010;42\n",
+                 ":4: \"1.000;41\" has two readings: 1 and 41 (--decimal \".\"), or 1000 and 41");
+}
+
 // A heading with commas tells the separator, not what "1.000" means.
 TEST_F(TraceDialect, QuotedThousandsOrDecimalsAreTwoReadings) {
   expect_refused("Time,F\n\"0\",\"1.250\"\n\"10\",\"2.500\"\n", "has two readings: 0 and 1.25");
@@ -153,7 +172,10 @@ TEST_F(TraceDialect, QuotedThousandsOrDecimalsAreTwoReadings) {
 
 TEST_F(TraceDialect, RefusesWhatIsNoTable) {
   expect_refused("", "is empty");
-  expect_refused("F\n", "no table of numbers");
+  expect_refused("F\n", ":1: no table of numbers");
+  expect_refused("Run\n<td>0.5</td>\n<td>0.6</td>\n",
+                 ":2: no table of numbers is found in its first 3 lines; "
+                 "this one cannot be read: \"<td>0.5</td>\"");
   expect_refused("a,b\n1,2\n2,3\n", ":1: there is no column \"F\"; there are 1 \"a\", 2 \"b\"");
   expect_refused("F,F\n1,2\n2,3\n", "columns 1 and 2 are both called \"F\"");
   expect_refused("PK\x03\x04", "Excel");

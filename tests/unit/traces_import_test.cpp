@@ -75,6 +75,29 @@ TEST_F(TraceImport, FootersAndRepeatedHeadingsAreLeftOut) {
   EXPECT_THAT(report_, HasSubstr("heading or its units again"));
 }
 
+// Below another heading the columns are not what they were.
+TEST_F(TraceImport, HeadingsOrUnitsThatChangeAreRefused) {
+  std::string first = "t,F,x\ns,1,mm\n";
+  for (int i = 0; i < 20; ++i) first += fmt::format("{:.2f},{},7\n", 0.01 * i, 1 + i);
+  const std::string scans = "0.00,1,2\n0.01,3,4\n";
+  expect_refused(first + "Run 2\nt,x,F\ns,mm,1\n" + scans,
+                 ":24: another heading, with 'x' in column 2 where line 1 has 'F': put this table, "
+                 "with its heading, into a file of its own");
+  expect_refused(first + "t,F,y\ns,1,mm\n" + scans,
+                 ":23: another heading, with 'y' in column 3 where line 1 has 'x'");
+  expect_refused(first + "Run 2\nt,F,x\n(ms),(1),(mm)\n" + scans,
+                 ":25: another row of units, with '(ms)' in column 1 where line 2 has 's'");
+  expect_refused("t (s),F (1)\n" + rows(0, 20) + "\nt (s),F (%)\n" + rows(0, 5),
+                 ":23: another heading, with 'F (%)' in column 2 where line 1 has 'F (1)'");
+  std::string longer = "t (s),x,F\n";
+  for (int i = 0; i < 200; ++i) longer += fmt::format("{:.2f},7,{}\n", 0.01 * i, 1 + i);
+  expect_refused("t (s),F\n" + rows(0, 300) + longer, ":302: another heading, with 'x' in column 2");
+  expect_values("t,F\ns,1\n" + rows(0, 25) + "Run 1\nt,F\n(s),(1)\n" + rows(25, 40), values(40));
+  expect_values("t,F\ns,1\n" + rows(0, 25) + "F,peak\n", values(25));
+  // Of scans, not of units.
+  expect_values("t,F\ns,1\n0,5\n1,1\n2,5\n", {5.0, 1.0, 5.0});
+}
+
 // A row of statistics may have a time that could be one.
 TEST_F(TraceImport, StatisticsWithAPlausibleTimeAreLeftOut) {
   std::string blank = "Note,t (s),F\n";
@@ -107,8 +130,21 @@ TEST_F(TraceImport, EventsInTheLastRowsAreScans) {
 }
 
 TEST_F(TraceImport, TextBetweenScansIsRefused) {
-  expect_refused("t (s),F\n" + rows(0, 5) + "0.05,abc\n" + rows(6, 9),
-                 ":7: column 'F' is 'abc', and scans follow in line 8");
+  expect_refused(
+      "t (s),F\n" + rows(0, 5) + "0.05,abc\n" + rows(6, 9),
+      ":7: column 'F' is 'abc', and scans follow in line 8: a number is needed there; correct the line, "
+      "or remove it");
+  expect_refused("t (s),F\n" + rows(0, 5) + "\nSlip,Peak\n1,8\n2,9\n",
+                 "correct the line, or remove it and those below it if they are no scans");
+}
+
+TEST_F(TraceImport, TheCellThatIsNoNumberIsShown) {
+  expect_refused("t (s),T,F\n0.00,5,1\n0.01,5,1\n0.02,5,1\n0.03,ERR,1\n0.04,5,1\n0.05,5,1\n",
+                 ":5: column 'T' is 'ERR', and scans follow in line 6");
+  std::string wider = "t (s),F\n" + rows(0, 150);
+  for (int i = 150; i < 300; ++i) wider += fmt::format("{:.2f},7,{}\n", 0.01 * i, i);
+  expect_refused(wider,
+                 ":152: there is '150' in column 3, and the table has 2, and the 150 lines from there");
 }
 
 TEST_F(TraceImport, LongTablesAreReadInPiecesThatDoNotShow) {
