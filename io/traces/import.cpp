@@ -23,6 +23,7 @@
 #include "core/base/text.hpp"
 #include "core/base/wording.hpp"
 #include "core/daq/calibration.hpp"
+#include "core/pipeline/segmenter.hpp"
 #include "core/signal/statistics.hpp"
 
 namespace stickslip::traces {
@@ -360,7 +361,7 @@ class Importer {
                                base::one_line(dialect_.columns[columns_.value].text, 40));
     }
     // Where the times are too coarse and each row counts as a scan, rows have the only times.
-    return add_tests(run, rate_Hz, [&](daq::ScanIndex scan) -> std::optional<std::int64_t> {
+    return add_tests(run, begin, rate_Hz, [&](daq::ScanIndex scan) -> std::optional<std::int64_t> {
       if (!start_ns_ || time_s_.empty()) return start_ns_;
       const double offset_s = each_row_counts ? time_s_[begin + static_cast<std::size_t>(scan)]
                                               : time_s_[begin] + static_cast<double>(scan) / rate_Hz;
@@ -386,8 +387,10 @@ class Importer {
       note("{} rows with the time of the row before left out", doubled);
   }
 
-  /// \param start_of  time of a scan of the run, ns since 1970; nullopt if unknown.
-  Result<void> add_tests(const std::shared_ptr<const record::ScanColumns>& run, double rate_Hz,
+  /// \param first_row  of the run. \param start_of  time of a scan of the run, ns since 1970; nullopt if
+  /// unknown.
+  Result<void> add_tests(const std::shared_ptr<const record::ScanColumns>& run, std::size_t first_row,
+                         double rate_Hz,
                          const std::function<std::optional<std::int64_t>(daq::ScanIndex)>& start_of) {
     record::Record whole;
     record::RecordHeader& header = whole.header;
@@ -405,7 +408,12 @@ class Importer {
                                        header.tester.tester().normal_load_N()};
     const base::LongColumn<double>& raw = run->raw;
     const auto coefficient = [&](std::size_t i) { return calibration.coefficient(raw[i]); };
-    if (const double level = sliding_level(raw.size(), coefficient); level < 0.0) {
+    const double level = sliding_level(raw.size(), coefficient);
+    if (std::abs(level) < pipeline::SegmenterSettings{}.end_coefficient) {
+      // The sign of an unloaded cell is that of its zero and its noise.
+      note("the run of {} {} has no load, {:.2g} as a coefficient: its sign is not checked", row_word(),
+           line(first_row), level);
+    } else if (level < 0.0) {
       return base::usage_error("{}: the force is negative while sliding, {:.4g} as a coefficient: {}",
                                request_.path, level,
                                request_.invert ? "leave out --invert" : "give --invert");

@@ -285,6 +285,19 @@ TEST_F(TraceImport, NegativeForceNeedsInvert) {
   EXPECT_TRUE(imported) << imported.error().message;
 }
 
+// A test, then a start without load that was given up, or the other way round.
+TEST_F(TraceImport, RunWithoutLoadTellsNoSign) {
+  const std::string test = "0.00,0\n0.01,0.3\n0.02,0.3\n";
+  const std::string unloaded = "0.00,-0.004\n0.01,0.001\n0.02,-0.004\n";
+  for (const auto& [content, line] : {std::pair{test + unloaded, 5}, std::pair{unloaded + test, 2}}) {
+    const auto imported = import("t (s),F\n" + content);
+    ASSERT_TRUE(imported) << imported.error().message;
+    EXPECT_EQ(imported->tests.size(), 2U);
+    EXPECT_THAT(imported->report,
+                HasSubstr(fmt::format("the run of line {} has no load, -0.004 as a coefficient", line)));
+  }
+}
+
 TEST_F(TraceImport, NegativeForceIsToldInALongTraceToo) {
   std::string content = "F\n";
   for (int i = 0; i < 200'000; ++i) content += i % 100 < 60 ? "-1\n" : "0\n";
