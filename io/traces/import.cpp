@@ -66,28 +66,25 @@ Result<Columns> columns_of(const ImportRequest& request, const Dialect& dialect)
   return columns;
 }
 
-/// As --unit takes it, of a heading, which may show a force as a mass or its unit as a word.
-std::string heading_unit(const std::string& unit) {
-  if (quantity_unit(unit)) return unit;
-  const std::string word = folded(unit);
-  if (word.starts_with("newton")) return "N";
-  if (word.starts_with("volt")) return "V";
-  if (word.starts_with("gram")) return "gf";
-  return unit + "f";
-}
-
 /// The unit of the values, stated, of the cells or of the heading.
 Result<std::string> unit_of(const ImportRequest& request, const ColumnName& column,
                             const std::string& cell_unit) {
   const std::string& own = cell_unit.empty() ? column.unit : cell_unit;
   if (request.unit.empty()) {
-    if (!own.empty()) return own;
+    if (!own.empty() && quantity_unit(own)) return own;
+    if (!own.empty()) {
+      return base::usage_error("{}: column \"{}\" is in {}, which is no unit of force: {}", request.path,
+                               base::one_line(column.text, 40), base::one_line(own, 20),
+                               quantity_unit(force_unit(own)) ? "give --unit " + force_unit(own)
+                               : is_unit(own)                 ? "choose another column"
+                                              : "give --unit, such as N, mN, gf, V or coefficient");
+    }
     return base::usage_error(
         "{}: column \"{}\" does not say its unit: give --unit, such as N, mN, gf, V or coefficient",
         request.path, base::one_line(column.text, 40));
   }
   const auto stated = quantity_unit(request.unit);
-  const auto found = quantity_unit(heading_unit(own));
+  const auto found = quantity_unit(force_unit(own));
   if (!own.empty() && stated && !found && is_unit(own)) {
     return base::usage_error("{}: column \"{}\" is in {}, which --unit {} is not: choose another column",
                              request.path, base::one_line(column.text, 40), base::one_line(own, 20),
@@ -97,7 +94,7 @@ Result<std::string> unit_of(const ImportRequest& request, const ColumnName& colu
       (stated->quantity != found->quantity || stated->scale != found->scale)) {
     return base::usage_error("{}: column \"{}\" is in {}, --unit says {}: give --unit {}", request.path,
                              base::one_line(column.text, 40), base::one_line(own, 20), request.unit,
-                             base::one_line(heading_unit(own), 20));
+                             base::one_line(force_unit(own), 20));
   }
   return request.unit;
 }

@@ -174,6 +174,24 @@ TEST_F(TraceImport, UnitOfTheHeadingIsComparedWithTheStatedOne) {
   expect_values("t (s),F (Newton)\n" + rows(0, 5), values(5));
 }
 
+TEST_F(TraceImport, UnitOfTheHeadingIsOneOfForce) {
+  for (const std::string unit : {"kp", "Newton", "NEWTONS", "lbs", "Kgf", "gF", "lbF", "kgF", "ozF"}) {
+    request_.unit.clear();
+    const auto imported = import("t (s),F [" + unit + "]\n" + rows(0, 5));
+    EXPECT_TRUE(imported) << imported.error().message;
+    request_.unit = unit;
+    EXPECT_TRUE(import("t (s),F [" + unit + "]\n" + rows(0, 5))) << unit;
+  }
+  request_.unit.clear();
+  expect_refused("t (s),F (grams)\n" + rows(0, 5),
+                 "column \"F (grams)\" is in grams, which is no unit of force: give --unit gf");
+  expect_refused("t (s),F (lb)\n" + rows(0, 5), "give --unit lbf");
+  expect_refused("t (s),F (Nx10)\n" + rows(0, 5), "give --unit, such as N");
+  expect_refused("t (s),F (mm)\n" + rows(0, 5), "choose another column");
+  EXPECT_THAT(quantity_unit("grams").error().message, HasSubstr("shown in grams is in gf"));
+  EXPECT_THAT(quantity_unit("lb").error().message, HasSubstr("shown in lb is in lbf"));
+}
+
 // What is said of a row names its line in the file, though the rows are read from the last to the first.
 TEST_F(TraceImport, ReversedRowsKeepTheirLines) {
   request_.reverse = true;
