@@ -270,6 +270,43 @@ bool is_vernier(const Head& head, const Reading& reading) {
          is_heading(reading.rows[reading.first - 3], reading.dialect);
 }
 
+/// A row above the first scan that has its time, and a text in place of a value: "0.01;warming up".
+bool is_early(const Row& row, const Dialect& dialect) {
+  const std::size_t width = dialect.columns.size();
+  const auto time = std::find(dialect.numeric.begin(), dialect.numeric.end(), true) - dialect.numeric.begin();
+  return row.fields.size() >= width && !is_scans(row, dialect) &&
+         read_cell(row.fields[static_cast<std::size_t>(time)], dialect.decimal).kind == CellKind::kNumber;
+}
+
+/// Whether rows are numbered from 1 on in a column without a name, as R's write.table does.
+bool numbers_rows(const Reading& reading, const std::vector<std::string>& names) {
+  return names.size() + 1 == reading.dialect.columns.size() && reading.first + 1 < reading.rows.size() &&
+         reading.rows[reading.first].fields.front() == "1" &&
+         reading.rows[reading.first + 1].fields.front() == "2" &&
+         !is_scan_counter(column_name(names.front()));
+}
+
+/// Whether a row right above the scans has names: is_heading(), or that of R; a heading with fewer names than
+/// columns, of which those behind the last name begin later; or one with digits as names beside that of a
+/// time.
+bool has_names(const Row& row, const Reading& reading) {
+  const Dialect& dialect = reading.dialect;
+  if (is_heading(row, dialect)) return true;
+  const auto is_text = [&](const std::string& field) {
+    return read_cell(field, dialect.decimal).kind == CellKind::kText;
+  };
+  if (std::all_of(row.fields.begin(), row.fields.end(), is_text) && row.fields.size() > 1) {
+    return numbers_rows(reading, row.fields) ||
+           (dialect.separator != kBlanks && row.fields.size() < dialect.columns.size() &&
+            row.fields.size() == reading.rows[reading.first].fields.size());
+  }
+  return row.fields.size() >= dialect.columns.size() && is_text(row.fields.front()) &&
+         time_rank(column_name(row.fields.front())) > 0 &&
+         std::all_of(row.fields.begin() + 1, row.fields.end(), [](const std::string& field) {
+           return field.find_first_not_of("0123456789") == std::string::npos;
+         });
+}
+
 void find_heading(Reading& reading, const Head& head) {
   Dialect& dialect = reading.dialect;
   if (!dialect.labels.empty()) {
@@ -282,15 +319,17 @@ void find_heading(Reading& reading, const Head& head) {
   std::size_t heading = reading.first - 1;
   const Row* units = nullptr;
   while (heading > 0 && is_rule(rows[heading])) --heading;
+  while (heading > 0 && is_early(rows[heading], dialect)) --heading;
   if (is_vernier(head, reading)) {
     units = &rows[reading.first - 1];
     heading = reading.first - 3;
   } else if (is_units_row(rows[heading]) && heading > 0 && is_heading(rows[heading - 1], dialect)) {
     units = &rows[heading--];
   }
-  if (!is_heading(rows[heading], dialect)) return;
+  if (!has_names(rows[heading], reading)) return;
   const bool blanks = dialect.separator == kBlanks;
   std::vector<std::string> names = blanks ? names_between_blanks(rows[heading].fields) : rows[heading].fields;
+  if (numbers_rows(reading, names)) names.insert(names.begin(), std::string{});
   if (blanks && names.size() != dialect.columns.size())
     names = names_between_wide_blanks(head.lines[static_cast<std::size_t>(rows[heading].line) - 1]);
   // A name with a blank in it shifts those behind it: no name is better than a wrong one.
@@ -298,6 +337,7 @@ void find_heading(Reading& reading, const Head& head) {
     dialect.unclear_heading_line = rows[heading].line;
     return;
   }
+  names.resize(std::max(names.size(), dialect.columns.size()));
   dialect.header_line = rows[heading].line;
   dialect.units_line = units == nullptr ? 0 : units->line;
   for (std::size_t c = 0; c < dialect.columns.size(); ++c) {

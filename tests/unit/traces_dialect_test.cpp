@@ -80,6 +80,31 @@ TEST_F(TraceDialect, NamesBetweenBlanksBelongToTheirColumns) {
   expect_values("t Peak F\n0.00 1\n0.01 2\n", {1.0, 2.0});
 }
 
+TEST_F(TraceDialect, HeadingMayHaveFewerNamesThanColumns) {
+  // R's write.table, with quotes and without.
+  expect_values("\"Time\" \"F\"\n\"1\" 0.00 1.5\n\"2\" 0.01 2.5\n", {1.5, 2.5});
+  expect_values("Time F Pos\n1 0.00 1.5 0.1\n2 0.01 2.5 0.2\n", {1.5, 2.5});
+  expect_values("Time\tF\n1\t0.00\t1.5\n2\t0.01\t2.5\n", {1.5, 2.5});
+  // A column that begins later.
+  expect_values("t (s),F\n0.00,1.5\n0.01,2.5\n0.02,3.5,7\n0.03,4.5,8\n0.04,5.5,9\n",
+                {1.5, 2.5, 3.5, 4.5, 5.5});
+}
+
+TEST_F(TraceDialect, NamesMayBeDigitsBesideATime) {
+  request_.column = "2";
+  expect_values("Time (s),1,2\n0.00,5,1.5\n0.01,6,2.5\n", {1.5, 2.5});
+}
+
+TEST_F(TraceDialect, ScansMayBeginBelowRowsOfTime) {
+  std::string content = "t (s),F\n0.00,warming up\n0.01,warming up\n";
+  std::vector<double> values;
+  for (int i = 2; i < 60; ++i) {
+    content += fmt::format("{:.2f},{}\n", 0.01 * i, i);
+    values.push_back(i);
+  }
+  expect_values(content, values);
+}
+
 TEST_F(TraceDialect, BarsSeparateColumns) {
   expect_values("t|F\n0.00|1.5\n0.01|2.5\n", {1.5, 2.5});
   expect_values("t|F\n0,00|1,5\n0,01|2,5\n", {1.5, 2.5});

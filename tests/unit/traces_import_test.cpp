@@ -305,9 +305,13 @@ TEST_F(TraceImport, NegativeForceNeedsInvert) {
 
 // A test, then a start without load that was given up, or the other way round.
 TEST_F(TraceImport, RunWithoutLoadTellsNoSign) {
-  const std::string test = "0.00,0\n0.01,0.3\n0.02,0.3\n";
-  const std::string unloaded = "0.00,-0.004\n0.01,0.001\n0.02,-0.004\n";
-  for (const auto& [content, line] : {std::pair{test + unloaded, 5}, std::pair{unloaded + test, 2}}) {
+  std::string test;
+  std::string unloaded;
+  for (int i = 0; i < 200; ++i) {
+    test += fmt::format("{:.2f},{}\n", 0.01 * i, i < 50 ? 0.0 : 0.3);
+    unloaded += fmt::format("{:.2f},{}\n", 0.01 * i, i % 2 == 0 ? 0.001 : -0.004);
+  }
+  for (const auto& [content, line] : {std::pair{test + unloaded, 202}, std::pair{unloaded + test, 2}}) {
     const auto imported = import("t (s),F\n" + content);
     ASSERT_TRUE(imported) << imported.error().message;
     EXPECT_EQ(imported->tests.size(), 2U);
