@@ -307,6 +307,30 @@ bool has_names(const Row& row, const Reading& reading) {
          });
 }
 
+/// Of several rows of words above the scans, that of the names: the one right above the units, else the one
+/// with most words that are no units, of equal ones the lowest.
+std::size_t names_row(const Reading& reading, std::size_t lowest) {
+  constexpr std::size_t kMostRows = 4;
+  const Dialect& dialect = reading.dialect;
+  const auto& rows = reading.rows;
+  const auto count = [&](std::size_t row, auto&& is_it) {
+    const auto begin = rows[row].fields.begin();
+    return std::count_if(begin, begin + static_cast<std::ptrdiff_t>(dialect.columns.size()), is_it);
+  };
+  const auto words = [&](std::size_t row) {
+    return count(row, [](const std::string& field) { return !trimmed(field).empty() && !is_unit(field); });
+  };
+  std::size_t best = lowest;
+  for (std::size_t i = lowest; lowest - i < kMostRows && is_heading(rows[i], dialect); --i) {
+    if (i < lowest && i > 0 && is_units_row(rows[i]) && is_heading(rows[i - 1], dialect)) return i - 1;
+    if (words(i) > words(best)) best = i;
+    // A time by its name is in the row of names alone.
+    if (i == 0 || count(i, [](const std::string& field) { return time_rank(column_name(field)) > 0; }) > 0)
+      break;
+  }
+  return best;
+}
+
 void find_heading(Reading& reading, const Head& head) {
   Dialect& dialect = reading.dialect;
   if (!dialect.labels.empty()) {
@@ -318,6 +342,7 @@ void find_heading(Reading& reading, const Head& head) {
   const auto& rows = reading.rows;
   std::size_t heading = reading.first - 1;
   const Row* units = nullptr;
+  Row only_units;
   while (heading > 0 && is_rule(rows[heading])) --heading;
   while (heading > 0 && is_early(rows[heading], dialect)) --heading;
   if (is_vernier(head, reading)) {
@@ -325,6 +350,11 @@ void find_heading(Reading& reading, const Head& head) {
     heading = reading.first - 3;
   } else if (is_units_row(rows[heading]) && heading > 0 && is_heading(rows[heading - 1], dialect)) {
     units = &rows[heading--];
+  } else if (const std::size_t names = names_row(reading, heading); names < heading) {
+    heading = names;
+    only_units = rows[heading + 1];
+    for (std::string& field : only_units.fields) field = is_unit(field) ? field : std::string{};
+    units = &only_units;
   }
   if (!has_names(rows[heading], reading)) return;
   const bool blanks = dialect.separator == kBlanks;

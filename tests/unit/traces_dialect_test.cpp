@@ -105,6 +105,24 @@ TEST_F(TraceDialect, ScansMayBeginBelowRowsOfTime) {
   expect_values(content, values);
 }
 
+TEST_F(TraceDialect, RowsOfUnitsAndCommentsFollowTheNames) {
+  request_.unit.clear();
+  for (const std::string heading :
+       {"\"TOA5\",\"CR1000\",\"x\",\"Std\"\n\"TIMESTAMP\",\"RECORD\",\"F\"\n\"TS\",\"RN\",\"N\"\n\"\",\"\","
+        "\"Smp\"\n",
+        "A(X),B(Y),C(Y)\nTime,Pos,F\ns,mm,N\nrun 12,run 12,run 12\n", "Time,Pos,F\ns,mm,N\n,run 12,run 12\n",
+        "Zeit,Weg,F\ns,mm,N\nMX840A,WA/50mm,U2B/1kN\nBessel,Bessel,Bessel\n"}) {
+    const auto imported = import(heading + "0.00,1,1.5\n0.01,2,2.5\n0.02,3,3.5\n");
+    ASSERT_TRUE(imported) << heading << imported.error().message;
+    EXPECT_EQ(test::in_memory(imported->tests.front()).raw, (std::vector{1.5, 2.5, 3.5}));
+  }
+  // A row with the name of a time is that of the names, whatever stands above it.
+  request_.unit = "V";
+  request_.load_cell = daq::LoadCell{2.0, 0.0};
+  request_.column = "V";
+  expect_values("Run,Run,Run\nt,F,V\n0.00,1,1.5\n0.01,2,2.5\n", {1.5, 2.5});
+}
+
 TEST_F(TraceDialect, BarsSeparateColumns) {
   expect_values("t|F\n0.00|1.5\n0.01|2.5\n", {1.5, 2.5});
   expect_values("t|F\n0,00|1,5\n0,01|2,5\n", {1.5, 2.5});
