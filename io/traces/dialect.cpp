@@ -433,6 +433,21 @@ bool heading_says_commas(const Reading& commas, const Head& head) {
   return head.lines[static_cast<std::size_t>(line) - 1].find(", ") == std::string::npos;
 }
 
+/// Names in the row above the scans, where the rows have twice as many fields, each second one of digits
+/// alone: the comma may be the decimal mark too. 0: it is not.
+std::size_t names_with_decimal_commas(const Reading& reading) {
+  if (reading.dialect.separator != ',' || reading.first == 0) return 0;
+  const std::size_t names = reading.rows[reading.first - 1].fields.size();
+  const auto begin = reading.rows.begin() + static_cast<std::ptrdiff_t>(reading.first);
+  const bool both = std::all_of(begin, reading.rows.end(), [names](const Row& row) {
+    for (std::size_t c = 1; c < row.fields.size(); c += 2) {
+      if (row.fields[c].find_first_not_of("0123456789") != std::string::npos) return false;
+    }
+    return row.fields.size() == 2 * names;
+  });
+  return both && !has_number(reading.rows[reading.first - 1].fields, '.') ? names : 0;
+}
+
 std::string option_of(const Reading& reading, const Reading& other) {
   if (reading.dialect.decimal != other.dialect.decimal)
     return fmt::format("--decimal \"{}\"", reading.dialect.decimal);
@@ -582,6 +597,17 @@ base::Result<Dialect> recognise(const Source& source, const DialectOptions& opti
         one.dialect.first_row_line,
         base::one_line(head->lines[static_cast<std::size_t>(one.dialect.first_row_line) - 1], 40), shown(one),
         option_of(one, other), shown(other), option_of(other, one));
+  }
+  const std::size_t names = names_with_decimal_commas(readings.front());
+  if (names > 0 && !stated.separator && !stated.decimal) {
+    const Reading& one = readings.front();
+    return base::usage_error(
+        "{}:{}: \"{}\" has two readings: {} columns, or {} with decimal commas, as the {} names above them "
+        "say. "
+        "Give --separator comma for {} columns; else export the file with semicolons between the columns",
+        path, one.dialect.first_row_line,
+        base::one_line(head->lines[static_cast<std::size_t>(one.dialect.first_row_line) - 1], 40), 2 * names,
+        names, names, 2 * names);
   }
   readings.front().dialect.decimal_is_stated = options.decimal.has_value();
   return readings.front().dialect;

@@ -142,6 +142,14 @@ TEST_F(TraceDialect, VernierHasARowOfSymbolsBetweenNamesAndUnits) {
   EXPECT_EQ(record.header.board.quantity, daq::RawQuantity::kForce_N);
 }
 
+TEST_F(TraceDialect, CommaMayBeSeparatorAndDecimalMark) {
+  const std::string content = "Zeit (s),F\n0,000,0,0158\n0,005,-0,0376\n0,010,0,0151\n";
+  expect_refused(content, ":2: \"0,000,0,0158\" has two readings: 4 columns, or 2 with decimal commas");
+  request_.dialect.separator = ',';
+  request_.column = "4";
+  expect_values(content, {158.0, 376.0, 151.0});
+}
+
 // Of a file in which somebody replaced commas by points, but not all.
 TEST_F(TraceDialect, TwoDecimalMarksInOneColumnAreRefused) {
   const std::string content = "t;F\n0.00;0.123\n0.01;0.250\n0.02;6,944\n0.03;0.5\n";
