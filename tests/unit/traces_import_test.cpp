@@ -380,13 +380,17 @@ TEST_F(TraceImport, UnitOfTheTimeIsItsHeadingsOrFoundByInspection) {
   std::string content = "millis,F\n";
   std::string since_1970 = "timestamp,F\n";
   std::string minutes = "Time (Min),F\n";
+  std::string hours = "Time (hours),F\n";
+  std::string seconds = "Time (Sekunden),F\n";
   for (int i = 0; i < 200; ++i) {
     content += fmt::format("{},{}\n", 10 * i, 1);
     since_1970 += fmt::format("17000000{:02}{:02}0000000,1\n", i / 100, i % 100);
     minutes += fmt::format("{:.8f},{}\n", 0.01 * i / 60.0, 1);
+    hours += fmt::format("{:.10f},{}\n", 0.01 * i / 3600.0, 1);
+    seconds += fmt::format("{:.2f},{}\n", 0.01 * i, 1);
   }
-  for (const std::string& text :
-       {content, "time" + content.substr(6), "Time (mSec)" + content.substr(6), minutes, since_1970}) {
+  for (const std::string& text : {content, "time" + content.substr(6), "Time (mSec)" + content.substr(6),
+                                  minutes, hours, "Time (hr)" + hours.substr(12), seconds, since_1970}) {
     const auto imported = import(text);
     ASSERT_TRUE(imported) << imported.error().message;
     EXPECT_NEAR(imported->tests[0].record.header.board.scan_rate_granted_Hz, 100.0, 0.01);
