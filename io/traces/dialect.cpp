@@ -153,6 +153,9 @@ bool find_columns(Reading& reading) {
       return static_cast<double>(count) > (1.0 - kNumericShare) * static_cast<double>(alike.size());
     };
     dialect.clock[c] = !dialect.numeric[c] && 2 * times > texts;
+    dialect.constant.push_back(
+        std::all_of(alike.begin() + static_cast<std::ptrdiff_t>(alike.size() / 2), alike.end(),
+                    [&](const Row* row) { return row->fields[c] == middle.fields[c]; }));
     dialect.sparse[c] = !dialect.numeric[c] && 2 * filled < alike.size();
     reading.texts += !dialect.numeric[c] && texts > 0 && !most(times) ? 2U : 0U;
     reading.texts += dialect.numeric[c] && most(zeros) ? 1U : 0U;

@@ -418,6 +418,23 @@ TEST_F(TraceImport, PrintedCommandKeepsWhatWasStated) {
   EXPECT_THAT(imported.error().message, HasSubstr(stated));
 }
 
+TEST_F(TraceImport, PrintedCommandImports) {
+  for (const auto& [content, words] :
+       {std::pair{"t (s),F (N),F (N)\n0.00,1,5\n0.01,2,5\n0.02,3,5\n", " --column 2 --sled-mass"},
+        std::pair{"t (s),\x1b[31mF (N)\n0.00,1\n0.01,2\n0.02,3\n", " --column 2 --sled-mass"},
+        std::pair{"t (s),F (g)\n0.00,1\n0.01,2\n0.02,3\n", " --column 'F (g)' --unit gf --sled-mass"},
+        std::pair{"t (s),v0,v1\n0.00,1,0\n0.01,2,0\n0.02,3,0\n", " --column v0 --unit UNIT"}}) {
+    test::write_content(request_.path, content);
+    const auto text = inspect(request_);
+    ASSERT_TRUE(text) << text.error().message;
+    EXPECT_THAT(*text, HasSubstr(words));
+  }
+  // The unit tells columns of one name apart.
+  request_.column = "F (N)";
+  request_.unit.clear();
+  EXPECT_TRUE(import("t,F,F\n(s),(kN),(N)\n0.00,1,1000\n0.01,2,2000\n0.02,3,3000\n"));
+}
+
 TEST_F(TraceImport, PrintedCommandNamesTheRecordAfterTheFile) {
   for (const auto& [file, record] :
        {std::pair{"a.b/nodot", "a.b/nodot.h5"}, std::pair{"a.b/x.csv", "a.b/x.h5"},
