@@ -283,10 +283,13 @@ bool is_early(const Row& row, const Dialect& dialect) {
 
 /// Whether rows are numbered from 1 on in a column without a name, as R's write.table does.
 bool numbers_rows(const Reading& reading, const std::vector<std::string>& names) {
-  return names.size() + 1 == reading.dialect.columns.size() && reading.first + 1 < reading.rows.size() &&
-         reading.rows[reading.first].fields.front() == "1" &&
-         reading.rows[reading.first + 1].fields.front() == "2" &&
-         !is_scan_counter(column_name(names.front()));
+  const auto begins = [&reading](std::size_t row, std::string_view number) {
+    const std::size_t i = reading.first + row;
+    return i < reading.rows.size() && !reading.rows[i].fields.empty() &&
+           reading.rows[i].fields.front() == number;
+  };
+  return !names.empty() && names.size() + 1 == reading.dialect.columns.size() && begins(0, "1") &&
+         begins(1, "2") && !is_scan_counter(column_name(names.front()));
 }
 
 /// Whether a row right above the scans has names: is_heading(), or that of R; a heading with fewer names than
