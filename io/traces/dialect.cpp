@@ -439,15 +439,18 @@ bool heading_says_commas(const Reading& commas, const Head& head) {
   return head.lines[static_cast<std::size_t>(line) - 1].find(", ") == std::string::npos;
 }
 
-/// Names in the row above the scans, where the rows have twice as many fields, each second one of digits
-/// alone: the comma may be the decimal mark too. 0: it is not.
+/// Names in the row above the scans, where the rows have twice as many fields, none with a point and each
+/// second one of digits alone: the comma may be the decimal mark too. 0: it is not.
 std::size_t names_with_decimal_commas(const Reading& reading) {
   if (reading.dialect.separator != ',' || reading.first == 0) return 0;
   const std::size_t names = reading.rows[reading.first - 1].fields.size();
   const auto begin = reading.rows.begin() + static_cast<std::ptrdiff_t>(reading.first);
   const bool both = std::all_of(begin, reading.rows.end(), [names](const Row& row) {
-    for (std::size_t c = 1; c < row.fields.size(); c += 2) {
-      if (row.fields[c].find_first_not_of("0123456789") != std::string::npos) return false;
+    for (std::size_t c = 0; c < row.fields.size(); ++c) {
+      const bool is_whole = c % 2 == 0;
+      if (is_whole ? row.fields[c].find('.') != std::string::npos
+                   : row.fields[c].find_first_not_of("0123456789") != std::string::npos)
+        return false;
     }
     return row.fields.size() == 2 * names;
   });
@@ -609,8 +612,8 @@ base::Result<Dialect> recognise(const Source& source, const DialectOptions& opti
     const Reading& one = readings.front();
     return base::usage_error(
         "{}:{}: \"{}\" has two readings: {} columns, or {} with decimal commas, as the {} names above them "
-        "say. "
-        "Give --separator comma for {} columns; else export the file with semicolons between the columns",
+        "say. Give --separator comma for {} columns; else export the file with semicolons between the "
+        "columns",
         path, one.dialect.first_row_line,
         base::one_line(head->lines[static_cast<std::size_t>(one.dialect.first_row_line) - 1], 40), 2 * names,
         names, names, 2 * names);

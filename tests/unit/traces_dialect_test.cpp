@@ -148,6 +148,9 @@ TEST_F(TraceDialect, CommaMayBeSeparatorAndDecimalMark) {
   request_.dialect.separator = ',';
   request_.column = "4";
   expect_values(content, {158.0, 376.0, 151.0});
+  // A decimal point tells.
+  request_.dialect.separator.reset();
+  expect_values("Run,b\n0,1,0.5,20\n0,2,0.5,30\n", {20.0, 30.0});
 }
 
 // Of a file in which somebody replaced commas by points, but not all.
