@@ -25,9 +25,10 @@ constexpr std::array<std::string_view, 28> kTimes{
     "seconds", "sekunden",    "laufzeit",   "tid",      "aika",     "uhrzeit",   "runtime",
     "время",   "zeitstempel", "horodatage", "heure",    "hora",     "date/time", "zeitpunkt"};
 /// Units in folded form that are written as words in any case.
-constexpr std::array<std::string_view, 13> kUnitWords{"msec",    "usec",   "sec",     "secs", "second",
-                                                      "seconds", "newton", "newtons", "gram", "grams",
-                                                      "volt",    "volts",  "min"};
+constexpr std::array<std::string_view, 24> kUnitWords{
+    "msec", "usec",  "sec",  "secs",     "second", "seconds", "newton", "newtons",
+    "gram", "grams", "volt", "volts",    "min",    "gf",      "kgf",    "lbf",
+    "ozf",  "lbs",   "kp",   "sekunden", "hours",  "hr",      "hrs",    "stunden"};
 constexpr std::array<std::string_view, 9> kCounters{"scan", "sample", "samples", "point", "no",
                                                     "no.",  "nr",     "index",   "n"};
 

@@ -153,6 +153,9 @@ bool find_columns(Reading& reading) {
       return static_cast<double>(count) > (1.0 - kNumericShare) * static_cast<double>(alike.size());
     };
     dialect.clock[c] = !dialect.numeric[c] && 2 * times > texts;
+    dialect.constant.push_back(
+        std::all_of(alike.begin() + static_cast<std::ptrdiff_t>(alike.size() / 2), alike.end(),
+                    [&](const Row* row) { return row->fields[c] == middle.fields[c]; }));
     dialect.sparse[c] = !dialect.numeric[c] && 2 * filled < alike.size();
     reading.texts += !dialect.numeric[c] && texts > 0 && !most(times) ? 2U : 0U;
     reading.texts += dialect.numeric[c] && most(zeros) ? 1U : 0U;
@@ -270,6 +273,70 @@ bool is_vernier(const Head& head, const Reading& reading) {
          is_heading(reading.rows[reading.first - 3], reading.dialect);
 }
 
+/// A row above the first scan that has its time, and a text in place of a value: "0.01;warming up".
+bool is_early(const Row& row, const Dialect& dialect) {
+  const std::size_t width = dialect.columns.size();
+  const auto time = std::find(dialect.numeric.begin(), dialect.numeric.end(), true) - dialect.numeric.begin();
+  return row.fields.size() >= width && !is_scans(row, dialect) &&
+         read_cell(row.fields[static_cast<std::size_t>(time)], dialect.decimal).kind == CellKind::kNumber;
+}
+
+/// Whether rows are numbered from 1 on in a column without a name, as R's write.table does.
+bool numbers_rows(const Reading& reading, const std::vector<std::string>& names) {
+  const auto begins = [&reading](std::size_t row, std::string_view number) {
+    const std::size_t i = reading.first + row;
+    return i < reading.rows.size() && !reading.rows[i].fields.empty() &&
+           reading.rows[i].fields.front() == number;
+  };
+  return !names.empty() && names.size() + 1 == reading.dialect.columns.size() && begins(0, "1") &&
+         begins(1, "2") && !is_scan_counter(column_name(names.front()));
+}
+
+/// Whether a row right above the scans has names: is_heading(), or that of R; a heading with fewer names than
+/// columns, of which those behind the last name begin later; or one with digits as names beside that of a
+/// time.
+bool has_names(const Row& row, const Reading& reading) {
+  const Dialect& dialect = reading.dialect;
+  if (is_heading(row, dialect)) return true;
+  const auto is_text = [&](const std::string& field) {
+    return read_cell(field, dialect.decimal).kind == CellKind::kText;
+  };
+  if (std::all_of(row.fields.begin(), row.fields.end(), is_text) && row.fields.size() > 1) {
+    return numbers_rows(reading, row.fields) ||
+           (dialect.separator != kBlanks && row.fields.size() < dialect.columns.size() &&
+            row.fields.size() == reading.rows[reading.first].fields.size());
+  }
+  return row.fields.size() >= dialect.columns.size() && is_text(row.fields.front()) &&
+         time_rank(column_name(row.fields.front())) > 0 &&
+         std::all_of(row.fields.begin() + 1, row.fields.end(), [](const std::string& field) {
+           return field.find_first_not_of("0123456789") == std::string::npos;
+         });
+}
+
+/// Of several rows of words above the scans, that of the names: the one right above the units, else the one
+/// with most words that are no units, of equal ones the lowest.
+std::size_t names_row(const Reading& reading, std::size_t lowest) {
+  constexpr std::size_t kMostRows = 4;
+  const Dialect& dialect = reading.dialect;
+  const auto& rows = reading.rows;
+  const auto count = [&](std::size_t row, auto&& is_it) {
+    const auto begin = rows[row].fields.begin();
+    return std::count_if(begin, begin + static_cast<std::ptrdiff_t>(dialect.columns.size()), is_it);
+  };
+  const auto words = [&](std::size_t row) {
+    return count(row, [](const std::string& field) { return !trimmed(field).empty() && !is_unit(field); });
+  };
+  std::size_t best = lowest;
+  for (std::size_t i = lowest; lowest - i < kMostRows && is_heading(rows[i], dialect); --i) {
+    if (i < lowest && i > 0 && is_units_row(rows[i]) && is_heading(rows[i - 1], dialect)) return i - 1;
+    if (words(i) > words(best)) best = i;
+    // A time by its name is in the row of names alone.
+    if (i == 0 || count(i, [](const std::string& field) { return time_rank(column_name(field)) > 0; }) > 0)
+      break;
+  }
+  return best;
+}
+
 void find_heading(Reading& reading, const Head& head) {
   Dialect& dialect = reading.dialect;
   if (!dialect.labels.empty()) {
@@ -281,16 +348,24 @@ void find_heading(Reading& reading, const Head& head) {
   const auto& rows = reading.rows;
   std::size_t heading = reading.first - 1;
   const Row* units = nullptr;
+  Row only_units;
   while (heading > 0 && is_rule(rows[heading])) --heading;
+  while (heading > 0 && is_early(rows[heading], dialect)) --heading;
   if (is_vernier(head, reading)) {
     units = &rows[reading.first - 1];
     heading = reading.first - 3;
   } else if (is_units_row(rows[heading]) && heading > 0 && is_heading(rows[heading - 1], dialect)) {
     units = &rows[heading--];
+  } else if (const std::size_t names = names_row(reading, heading); names < heading) {
+    heading = names;
+    only_units = rows[heading + 1];
+    for (std::string& field : only_units.fields) field = is_unit(field) ? field : std::string{};
+    units = &only_units;
   }
-  if (!is_heading(rows[heading], dialect)) return;
+  if (!has_names(rows[heading], reading)) return;
   const bool blanks = dialect.separator == kBlanks;
   std::vector<std::string> names = blanks ? names_between_blanks(rows[heading].fields) : rows[heading].fields;
+  if (numbers_rows(reading, names)) names.insert(names.begin(), std::string{});
   if (blanks && names.size() != dialect.columns.size())
     names = names_between_wide_blanks(head.lines[static_cast<std::size_t>(rows[heading].line) - 1]);
   // A name with a blank in it shifts those behind it: no name is better than a wrong one.
@@ -298,6 +373,7 @@ void find_heading(Reading& reading, const Head& head) {
     dialect.unclear_heading_line = rows[heading].line;
     return;
   }
+  names.resize(std::max(names.size(), dialect.columns.size()));
   dialect.header_line = rows[heading].line;
   dialect.units_line = units == nullptr ? 0 : units->line;
   for (std::size_t c = 0; c < dialect.columns.size(); ++c) {
@@ -382,6 +458,24 @@ bool heading_says_commas(const Reading& commas, const Head& head) {
   const std::int64_t line = commas.dialect.header_line;
   if (commas.dialect.separator != ',' || line == 0 || commas.dialect.columns.size() < 2) return false;
   return head.lines[static_cast<std::size_t>(line) - 1].find(", ") == std::string::npos;
+}
+
+/// Names in the row above the scans, where the rows have twice as many fields, none with a point and each
+/// second one of digits alone: the comma may be the decimal mark too. 0: it is not.
+std::size_t names_with_decimal_commas(const Reading& reading) {
+  if (reading.dialect.separator != ',' || reading.first == 0) return 0;
+  const std::size_t names = reading.rows[reading.first - 1].fields.size();
+  const auto begin = reading.rows.begin() + static_cast<std::ptrdiff_t>(reading.first);
+  const bool both = std::all_of(begin, reading.rows.end(), [names](const Row& row) {
+    for (std::size_t c = 0; c < row.fields.size(); ++c) {
+      const bool is_whole = c % 2 == 0;
+      if (is_whole ? row.fields[c].find('.') != std::string::npos
+                   : row.fields[c].find_first_not_of("0123456789") != std::string::npos)
+        return false;
+    }
+    return row.fields.size() == 2 * names;
+  });
+  return both && !has_number(reading.rows[reading.first - 1].fields, '.') ? names : 0;
 }
 
 std::string option_of(const Reading& reading, const Reading& other) {
@@ -551,6 +645,17 @@ base::Result<Dialect> recognise(const Source& source, const DialectOptions& opti
         "{}:{}: \"{}\" has two readings: {} ({}), or {} ({}). Give the option that is right", path, line,
         base::one_line(head->lines[static_cast<std::size_t>(line) - 1], 40), shown(one, i),
         option_of(one, other), shown(other, j), option_of(other, one));
+  }
+  const std::size_t names = names_with_decimal_commas(readings.front());
+  if (names > 0 && !stated.separator && !stated.decimal) {
+    const Reading& one = readings.front();
+    return base::usage_error(
+        "{}:{}: \"{}\" has two readings: {} columns, or {} with decimal commas, as the {} names above them "
+        "say. Give --separator comma for {} columns; else export the file with semicolons between the "
+        "columns",
+        path, one.dialect.first_row_line,
+        base::one_line(head->lines[static_cast<std::size_t>(one.dialect.first_row_line) - 1], 40), 2 * names,
+        names, names, 2 * names);
   }
   if (auto clear = refuse_other_mark(readings.front(), path); !clear) return tl::unexpected(clear.error());
   readings.front().dialect.decimal_is_stated = options.decimal.has_value();

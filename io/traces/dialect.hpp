@@ -45,6 +45,7 @@ struct Dialect {
   std::vector<bool> empty;                ///< Columns in which no row has anything.
   std::vector<bool> clock;                ///< Columns of clock times and dates, which are not numeric.
   std::vector<bool> sparse;               ///< Columns of text in which fewer than half of the rows have any.
+  std::vector<bool> constant;             ///< Columns in which all rows looked at have the same text.
   std::vector<std::string> labels;        ///< "Force" where each cell reads "Force:0.12"; else empty.
   std::shared_ptr<NumberFile> numbers;  ///< Of a file that is no text, instead of all but columns; else null.
 

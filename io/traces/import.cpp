@@ -23,6 +23,7 @@
 #include "core/base/text.hpp"
 #include "core/base/wording.hpp"
 #include "core/daq/calibration.hpp"
+#include "core/pipeline/segmenter.hpp"
 #include "core/signal/statistics.hpp"
 
 namespace stickslip::traces {
@@ -65,28 +66,25 @@ Result<Columns> columns_of(const ImportRequest& request, const Dialect& dialect)
   return columns;
 }
 
-/// As --unit takes it, of a heading, which may show a force as a mass or its unit as a word.
-std::string heading_unit(const std::string& unit) {
-  if (quantity_unit(unit)) return unit;
-  const std::string word = folded(unit);
-  if (word.starts_with("newton")) return "N";
-  if (word.starts_with("volt")) return "V";
-  if (word.starts_with("gram")) return "gf";
-  return unit + "f";
-}
-
 /// The unit of the values, stated, of the cells or of the heading.
 Result<std::string> unit_of(const ImportRequest& request, const ColumnName& column,
                             const std::string& cell_unit) {
   const std::string& own = cell_unit.empty() ? column.unit : cell_unit;
   if (request.unit.empty()) {
-    if (!own.empty()) return own;
+    if (!own.empty() && quantity_unit(own)) return own;
+    if (!own.empty()) {
+      return base::usage_error("{}: column \"{}\" is in {}, which is no unit of force: {}", request.path,
+                               base::one_line(column.text, 40), base::one_line(own, 20),
+                               quantity_unit(force_unit(own)) ? "give --unit " + force_unit(own)
+                               : is_unit(own)                 ? "choose another column"
+                                              : "give --unit, such as N, mN, gf, V or coefficient");
+    }
     return base::usage_error(
         "{}: column \"{}\" does not say its unit: give --unit, such as N, mN, gf, V or coefficient",
         request.path, base::one_line(column.text, 40));
   }
   const auto stated = quantity_unit(request.unit);
-  const auto found = quantity_unit(heading_unit(own));
+  const auto found = quantity_unit(force_unit(own));
   if (!own.empty() && stated && !found && is_unit(own)) {
     return base::usage_error("{}: column \"{}\" is in {}, which --unit {} is not: choose another column",
                              request.path, base::one_line(column.text, 40), base::one_line(own, 20),
@@ -96,7 +94,7 @@ Result<std::string> unit_of(const ImportRequest& request, const ColumnName& colu
       (stated->quantity != found->quantity || stated->scale != found->scale)) {
     return base::usage_error("{}: column \"{}\" is in {}, --unit says {}: give --unit {}", request.path,
                              base::one_line(column.text, 40), base::one_line(own, 20), request.unit,
-                             base::one_line(heading_unit(own), 20));
+                             base::one_line(force_unit(own), 20));
   }
   return request.unit;
 }
@@ -360,7 +358,7 @@ class Importer {
                                base::one_line(dialect_.columns[columns_.value].text, 40));
     }
     // Where the times are too coarse and each row counts as a scan, rows have the only times.
-    return add_tests(run, rate_Hz, [&](daq::ScanIndex scan) -> std::optional<std::int64_t> {
+    return add_tests(run, begin, rate_Hz, [&](daq::ScanIndex scan) -> std::optional<std::int64_t> {
       if (!start_ns_ || time_s_.empty()) return start_ns_;
       const double offset_s = each_row_counts ? time_s_[begin + static_cast<std::size_t>(scan)]
                                               : time_s_[begin] + static_cast<double>(scan) / rate_Hz;
@@ -386,8 +384,10 @@ class Importer {
       note("{} rows with the time of the row before left out", doubled);
   }
 
-  /// \param start_of  time of a scan of the run, ns since 1970; nullopt if unknown.
-  Result<void> add_tests(const std::shared_ptr<const record::ScanColumns>& run, double rate_Hz,
+  /// \param first_row  of the run. \param start_of  time of a scan of the run, ns since 1970; nullopt if
+  /// unknown.
+  Result<void> add_tests(const std::shared_ptr<const record::ScanColumns>& run, std::size_t first_row,
+                         double rate_Hz,
                          const std::function<std::optional<std::int64_t>(daq::ScanIndex)>& start_of) {
     record::Record whole;
     record::RecordHeader& header = whole.header;
@@ -405,7 +405,12 @@ class Importer {
                                        header.tester.tester().normal_load_N()};
     const base::LongColumn<double>& raw = run->raw;
     const auto coefficient = [&](std::size_t i) { return calibration.coefficient(raw[i]); };
-    if (const double level = sliding_level(raw.size(), coefficient); level < 0.0) {
+    const double level = sliding_level(raw.size(), coefficient);
+    if (std::abs(level) < pipeline::SegmenterSettings{}.end_coefficient) {
+      // The sign of an unloaded cell is that of its zero and its noise.
+      note("the run of {} {} has no load, {:.2g} as a coefficient: its sign is not checked", row_word(),
+           line(first_row), level);
+    } else if (level < 0.0) {
       return base::usage_error("{}: the force is negative while sliding, {:.4g} as a coefficient: {}",
                                request_.path, level,
                                request_.invert ? "leave out --invert" : "give --invert");

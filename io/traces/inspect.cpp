@@ -26,9 +26,10 @@ using base::Result;
 
 constexpr std::size_t kFirstValues = 3;
 
-/// The column that is a force by its unit or its name, else the last one with numbers.
+/// The column that is a force by its unit or its name, else the last one with numbers that are not all equal.
 std::size_t likely_column(const Dialect& dialect) {
   std::size_t last = 0;
+  bool any = false;
   for (std::size_t c = 0; c < dialect.columns.size(); ++c) {
     if (!dialect.numeric[c] || time_rank(dialect.columns[c]) > 0) continue;
     const std::string name = folded(dialect.columns[c].name);
@@ -37,6 +38,8 @@ std::size_t likely_column(const Dialect& dialect) {
                          name.starts_with("friction") || name.starts_with("reibkraft") || name == "f";
     if (by_name || (unit && unit->quantity == daq::RawQuantity::kForce_N)) return c;
     if (dialect.numbers && dialect.numbers->size(c) < dialect.numbers->size(last)) continue;
+    if (any && !dialect.constant.empty() && dialect.constant[c]) continue;
+    any = true;
     last = c;
   }
   return last;
@@ -75,6 +78,16 @@ std::string own_command(const std::string& path) {
   return "stickslip import " + base::shell_word(path) + output_option(path);
 }
 
+/// How an option names a column: by its heading, or by its number where another column has the same heading
+/// or the heading cannot be typed.
+std::string column_word(const Dialect& dialect, std::size_t column) {
+  const std::string& heading = dialect.columns[column].text;
+  const auto same = std::count_if(dialect.columns.begin(), dialect.columns.end(),
+                                  [&](const ColumnName& other) { return other.text == heading; });
+  const bool is_clear = !heading.empty() && same == 1 && base::printable(heading) == heading;
+  return is_clear ? base::shell_word(heading) : std::to_string(column + 1);
+}
+
 /// What tells the times where no column is one by its name.
 std::string time_options(const Dialect& dialect, std::size_t column) {
   if (time_column_of(dialect, column)) return {};
@@ -83,8 +96,7 @@ std::string time_options(const Dialect& dialect, std::size_t column) {
     return !dialect.numbers && dialect.header_line == 0 && column != 0 ? "--time-column 1 --time-unit UNIT"
                                                                        : "--rate HZ";
   const auto at = static_cast<std::size_t>(clock - dialect.clock.begin());
-  const std::string& heading = dialect.columns[at].text;
-  return "--time-column " + (heading.empty() ? std::to_string(at + 1) : base::shell_word(heading));
+  return "--time-column " + column_word(dialect, at);
 }
 
 /// Words in capitals stand for what the file does not say: nothing is guessed that changes a number.
@@ -94,10 +106,11 @@ std::string command(const ImportRequest& request, const Dialect& dialect, const 
   const std::string& own = cell_unit.empty() ? name.unit : cell_unit;
   std::string text =
       fmt::format("stickslip import {} {} {}", base::shell_word(request.path),
-                  dialect.numbers ? dialect.numbers->option() : "--column",
-                  name.text.empty() ? std::to_string(column + 1) : base::shell_word(name.text));
-  const auto unit = quantity_unit(own);
-  if (own.empty() || !unit) text += " --unit UNIT";
+                  dialect.numbers ? dialect.numbers->option() : "--column", column_word(dialect, column));
+  const std::string stated = own.empty() ? own : force_unit(own);
+  const auto unit = quantity_unit(stated);
+  if (!unit) text += " --unit UNIT";
+  if (unit && stated != own) text += " --unit " + stated;
   if (const std::string time = time_options(dialect, column); !time.empty()) text += " " + time;
   const bool counts = unit && unit->quantity == daq::RawQuantity::kCounts;
   if (counts) text += " --count-range LOWEST..HIGHEST --volts-per-count VOLTS";

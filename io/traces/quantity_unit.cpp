@@ -6,10 +6,30 @@
 #include <cstddef>
 #include <optional>
 
+#include "io/traces/column_name.hpp"
+
 #include "core/base/quantity.hpp"
 #include "core/base/wording.hpp"
 
 namespace stickslip::traces {
+namespace {
+
+/// The unit that a word means: words and the units of a weight in any case, such as "Kgf" or "lbF".
+std::string of_word(std::string_view unit) {
+  const std::string word = folded(unit);
+  if (word == "newton" || word == "newtons") return "N";
+  if (word == "volt" || word == "volts") return "V";
+  if (word == "kp" || word == "kilopond") return "kgf";
+  if (word == "lbs") return "lbf";
+  return word == "gf" || word == "kgf" || word == "lbf" || word == "ozf" ? word : std::string{unit};
+}
+
+}  // namespace
+
+std::string force_unit(const std::string& unit) {
+  if (quantity_unit(unit)) return unit;
+  return folded(unit).starts_with("gram") ? "gf" : unit + "f";
+}
 
 base::Result<QuantityUnit> quantity_unit(std::string_view unit) {
   if (unit == "coefficient" || unit == "1") return QuantityUnit{daq::RawQuantity::kCoefficient, 1.0};
@@ -17,16 +37,20 @@ base::Result<QuantityUnit> quantity_unit(std::string_view unit) {
   if (unit == "cN") return QuantityUnit{daq::RawQuantity::kForce_N, 0.01};
   if (unit == "daN") return QuantityUnit{daq::RawQuantity::kForce_N, 10.0};
   if (unit == "percent" || unit == "%") return QuantityUnit{daq::RawQuantity::kCoefficient, 0.01};
-  const std::string one = fmt::format("1 {}", unit);
+  const std::string one = "1 " + of_word(unit);
   if (const auto force = base::parse_quantity(one, base::Dimension::kForce))
     return QuantityUnit{daq::RawQuantity::kForce_N, *force};
   if (const auto voltage = base::parse_quantity(one, base::Dimension::kVoltage))
     return QuantityUnit{daq::RawQuantity::kVolts, *voltage};
+  const std::string word = folded(unit);
+  const bool is_mass =
+      word == "g" || word == "gram" || word == "grams" || word == "kg" || word == "lb" || word == "oz";
   return base::usage_error(
       "--unit: \"{}\" is no unit of force; allowed: N, mN, cN, daN, kN, gf, kgf, lbf, ozf, V, mV, "
       "counts, coefficient, percent{}",
       base::one_line(unit, 20),
-      unit == "g" || unit == "kg" ? fmt::format(". A force shown in {} is in {}f", unit, unit) : "");
+      is_mass ? fmt::format(". A force shown in {} is in {}", unit, word.starts_with("g") ? "gf" : word + "f")
+              : "");
 }
 
 base::Result<CountScale> count_scale(std::string_view range, double volts_per_count) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "core/base/result.hpp"
@@ -28,5 +29,9 @@ struct CountScale {
 
 /// N, mN, kN, gf, kgf, lbf, ozf …, V, mV, uV, counts, coefficient, percent. Errors: kUsage listing them.
 [[nodiscard]] base::Result<QuantityUnit> quantity_unit(std::string_view unit);
+
+/// What --unit takes for a unit of a heading or a cell: "gf" for "g" or "grams", in which a force is shown as
+/// a mass. Another unit if there is no such one: quantity_unit() tells.
+[[nodiscard]] std::string force_unit(const std::string& unit);
 
 }  // namespace stickslip::traces

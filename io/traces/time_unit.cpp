@@ -27,9 +27,10 @@ std::string stated_time_unit(const ImportRequest& request, const ColumnName& col
   if (name.starts_with("milli")) return "ms";
   if (name.starts_with("micros")) return "us";
   const std::string unit = folded(column.unit);
-  if (unit == "s" || unit.starts_with("sec")) return "s";
+  if (unit == "s" || unit.starts_with("sec") || unit.starts_with("sek")) return "s";
   if (unit == "msec" || unit.starts_with("millisec")) return "ms";
   if (unit == "usec" || unit.starts_with("microsec")) return "us";
+  if (unit == "hr" || unit == "hrs" || unit.starts_with("hour") || unit.starts_with("stunde")) return "h";
   return unit.starts_with("min") ? "min" : column.unit;
 }
 

@@ -572,6 +572,12 @@ base::Result<std::size_t> find_column(const Dialect& dialect, const std::string&
   auto found =
       find([&](const ColumnName& column) { return column.text == wanted || column.text == "/" + wanted; });
   if (found && !*found) found = find([&](const ColumnName& column) { return folded(column.text) == form; });
+  if (const ColumnName name = column_name(wanted);
+      found && !*found && !dialect.numbers && !name.unit.empty()) {
+    found = find([&](const ColumnName& column) {
+      return folded(column.name) == folded(name.name) && column.unit == name.unit;
+    });
+  }
   if (found && !*found) {
     // Brackets hold a unit in a heading; behind a variable they choose one of its columns.
     const std::string bare = dialect.numbers ? form : folded(column_name(wanted).name);

@@ -80,6 +80,49 @@ TEST_F(TraceDialect, NamesBetweenBlanksBelongToTheirColumns) {
   expect_values("t Peak F\n0.00 1\n0.01 2\n", {1.0, 2.0});
 }
 
+TEST_F(TraceDialect, HeadingMayHaveFewerNamesThanColumns) {
+  // R's write.table, with quotes and without.
+  expect_values("\"Time\" \"F\"\n\"1\" 0.00 1.5\n\"2\" 0.01 2.5\n", {1.5, 2.5});
+  expect_values("Time F Pos\n1 0.00 1.5 0.1\n2 0.01 2.5 0.2\n", {1.5, 2.5});
+  expect_values("Time\tF\n1\t0.00\t1.5\n2\t0.01\t2.5\n", {1.5, 2.5});
+  // A column that begins later.
+  expect_values("t (s),F\n0.00,1.5\n0.01,2.5\n0.02,3.5,7\n0.03,4.5,8\n0.04,5.5,9\n",
+                {1.5, 2.5, 3.5, 4.5, 5.5});
+}
+
+TEST_F(TraceDialect, NamesMayBeDigitsBesideATime) {
+  request_.column = "2";
+  expect_values("Time (s),1,2\n0.00,5,1.5\n0.01,6,2.5\n", {1.5, 2.5});
+}
+
+TEST_F(TraceDialect, ScansMayBeginBelowRowsOfTime) {
+  std::string content = "t (s),F\n0.00,warming up\n0.01,warming up\n";
+  std::vector<double> values;
+  for (int i = 2; i < 60; ++i) {
+    content += fmt::format("{:.2f},{}\n", 0.01 * i, i);
+    values.push_back(i);
+  }
+  expect_values(content, values);
+}
+
+TEST_F(TraceDialect, RowsOfUnitsAndCommentsFollowTheNames) {
+  request_.unit.clear();
+  for (const std::string heading :
+       {"\"TOA5\",\"CR1000\",\"x\",\"Std\"\n\"TIMESTAMP\",\"RECORD\",\"F\"\n\"TS\",\"RN\",\"N\"\n\"\",\"\","
+        "\"Smp\"\n",
+        "A(X),B(Y),C(Y)\nTime,Pos,F\ns,mm,N\nrun 12,run 12,run 12\n", "Time,Pos,F\ns,mm,N\n,run 12,run 12\n",
+        "Zeit,Weg,F\ns,mm,N\nMX840A,WA/50mm,U2B/1kN\nBessel,Bessel,Bessel\n"}) {
+    const auto imported = import(heading + "0.00,1,1.5\n0.01,2,2.5\n0.02,3,3.5\n");
+    ASSERT_TRUE(imported) << heading << imported.error().message;
+    EXPECT_EQ(test::in_memory(imported->tests.front()).raw, (std::vector{1.5, 2.5, 3.5}));
+  }
+  // A row with the name of a time is that of the names, whatever stands above it.
+  request_.unit = "V";
+  request_.load_cell = daq::LoadCell{2.0, 0.0};
+  request_.column = "V";
+  expect_values("Run,Run,Run\nt,F,V\n0.00,1,1.5\n0.01,2,2.5\n", {1.5, 2.5});
+}
+
 TEST_F(TraceDialect, BarsSeparateColumns) {
   expect_values("t|F\n0.00|1.5\n0.01|2.5\n", {1.5, 2.5});
   expect_values("t|F\n0,00|1,5\n0,01|2,5\n", {1.5, 2.5});
@@ -97,6 +140,17 @@ TEST_F(TraceDialect, VernierHasARowOfSymbolsBetweenNamesAndUnits) {
       "0.00\t0.1\t1.5\n0.01\t0.2\t2.5\n0.02\t0.2\t3.5\n",
       {1.5, 2.5, 3.5});
   EXPECT_EQ(record.header.board.quantity, daq::RawQuantity::kForce_N);
+}
+
+TEST_F(TraceDialect, CommaMayBeSeparatorAndDecimalMark) {
+  const std::string content = "Zeit (s),F\n0,000,0,0158\n0,005,-0,0376\n0,010,0,0151\n";
+  expect_refused(content, ":2: \"0,000,0,0158\" has two readings: 4 columns, or 2 with decimal commas");
+  request_.dialect.separator = ',';
+  request_.column = "4";
+  expect_values(content, {158.0, 376.0, 151.0});
+  // A decimal point tells.
+  request_.dialect.separator.reset();
+  expect_values("Run,b\n0,1,0.5,20\n0,2,0.5,30\n", {20.0, 30.0});
 }
 
 // Of a file in which somebody replaced commas by points, but not all.

@@ -210,6 +210,24 @@ TEST_F(TraceImport, UnitOfTheHeadingIsComparedWithTheStatedOne) {
   expect_values("t (s),F (Newton)\n" + rows(0, 5), values(5));
 }
 
+TEST_F(TraceImport, UnitOfTheHeadingIsOneOfForce) {
+  for (const std::string unit : {"kp", "Newton", "NEWTONS", "lbs", "Kgf", "gF", "lbF", "kgF", "ozF"}) {
+    request_.unit.clear();
+    const auto imported = import("t (s),F [" + unit + "]\n" + rows(0, 5));
+    EXPECT_TRUE(imported) << imported.error().message;
+    request_.unit = unit;
+    EXPECT_TRUE(import("t (s),F [" + unit + "]\n" + rows(0, 5))) << unit;
+  }
+  request_.unit.clear();
+  expect_refused("t (s),F (grams)\n" + rows(0, 5),
+                 "column \"F (grams)\" is in grams, which is no unit of force: give --unit gf");
+  expect_refused("t (s),F (lb)\n" + rows(0, 5), "give --unit lbf");
+  expect_refused("t (s),F (Nx10)\n" + rows(0, 5), "give --unit, such as N");
+  expect_refused("t (s),F (mm)\n" + rows(0, 5), "choose another column");
+  EXPECT_THAT(quantity_unit("grams").error().message, HasSubstr("shown in grams is in gf"));
+  EXPECT_THAT(quantity_unit("lb").error().message, HasSubstr("shown in lb is in lbf"));
+}
+
 // What is said of a row names its line in the file, though the rows are read from the last to the first.
 TEST_F(TraceImport, ReversedRowsKeepTheirLines) {
   request_.reverse = true;
@@ -321,6 +339,23 @@ TEST_F(TraceImport, NegativeForceNeedsInvert) {
   EXPECT_TRUE(imported) << imported.error().message;
 }
 
+// A test, then a start without load that was given up, or the other way round.
+TEST_F(TraceImport, RunWithoutLoadTellsNoSign) {
+  std::string test;
+  std::string unloaded;
+  for (int i = 0; i < 200; ++i) {
+    test += fmt::format("{:.2f},{}\n", 0.01 * i, i < 50 ? 0.0 : 0.3);
+    unloaded += fmt::format("{:.2f},{}\n", 0.01 * i, i % 2 == 0 ? 0.001 : -0.004);
+  }
+  for (const auto& [content, line] : {std::pair{test + unloaded, 202}, std::pair{unloaded + test, 2}}) {
+    const auto imported = import("t (s),F\n" + content);
+    ASSERT_TRUE(imported) << imported.error().message;
+    EXPECT_EQ(imported->tests.size(), 2U);
+    EXPECT_THAT(imported->report,
+                HasSubstr(fmt::format("the run of line {} has no load, -0.004 as a coefficient", line)));
+  }
+}
+
 TEST_F(TraceImport, NegativeForceIsToldInALongTraceToo) {
   std::string content = "F\n";
   for (int i = 0; i < 200'000; ++i) content += i % 100 < 60 ? "-1\n" : "0\n";
@@ -381,13 +416,17 @@ TEST_F(TraceImport, UnitOfTheTimeIsItsHeadingsOrFoundByInspection) {
   std::string content = "millis,F\n";
   std::string since_1970 = "timestamp,F\n";
   std::string minutes = "Time (Min),F\n";
+  std::string hours = "Time (hours),F\n";
+  std::string seconds = "Time (Sekunden),F\n";
   for (int i = 0; i < 200; ++i) {
     content += fmt::format("{},{}\n", 10 * i, 1);
     since_1970 += fmt::format("17000000{:02}{:02}0000000,1\n", i / 100, i % 100);
     minutes += fmt::format("{:.8f},{}\n", 0.01 * i / 60.0, 1);
+    hours += fmt::format("{:.10f},{}\n", 0.01 * i / 3600.0, 1);
+    seconds += fmt::format("{:.2f},{}\n", 0.01 * i, 1);
   }
-  for (const std::string& text :
-       {content, "time" + content.substr(6), "Time (mSec)" + content.substr(6), minutes, since_1970}) {
+  for (const std::string& text : {content, "time" + content.substr(6), "Time (mSec)" + content.substr(6),
+                                  minutes, hours, "Time (hr)" + hours.substr(12), seconds, since_1970}) {
     const auto imported = import(text);
     ASSERT_TRUE(imported) << imported.error().message;
     EXPECT_NEAR(imported->tests[0].record.header.board.scan_rate_granted_Hz, 100.0, 0.01);
@@ -413,6 +452,23 @@ TEST_F(TraceImport, PrintedCommandKeepsWhatWasStated) {
   const auto imported = import_trace(request_);
   ASSERT_FALSE(imported);
   EXPECT_THAT(imported.error().message, HasSubstr(stated));
+}
+
+TEST_F(TraceImport, PrintedCommandImports) {
+  for (const auto& [content, words] :
+       {std::pair{"t (s),F (N),F (N)\n0.00,1,5\n0.01,2,5\n0.02,3,5\n", " --column 2 --sled-mass"},
+        std::pair{"t (s),\x1b[31mF (N)\n0.00,1\n0.01,2\n0.02,3\n", " --column 2 --sled-mass"},
+        std::pair{"t (s),F (g)\n0.00,1\n0.01,2\n0.02,3\n", " --column 'F (g)' --unit gf --sled-mass"},
+        std::pair{"t (s),v0,v1\n0.00,1,0\n0.01,2,0\n0.02,3,0\n", " --column v0 --unit UNIT"}}) {
+    test::write_content(request_.path, content);
+    const auto text = inspect(request_);
+    ASSERT_TRUE(text) << text.error().message;
+    EXPECT_THAT(*text, HasSubstr(words));
+  }
+  // The unit tells columns of one name apart.
+  request_.column = "F (N)";
+  request_.unit.clear();
+  EXPECT_TRUE(import("t,F,F\n(s),(kN),(N)\n0.00,1,1000\n0.01,2,2000\n0.02,3,3000\n"));
 }
 
 TEST_F(TraceImport, PrintedCommandNamesTheRecordAfterTheFile) {
