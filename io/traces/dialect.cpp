@@ -350,7 +350,12 @@ void find_heading(Reading& reading, const Head& head) {
   const Row* units = nullptr;
   Row only_units;
   while (heading > 0 && is_rule(rows[heading])) --heading;
-  while (heading > 0 && is_early(rows[heading], dialect)) --heading;
+  std::size_t above = heading;
+  while (above > 0 && is_early(rows[above], dialect)) --above;
+  // Rows with another decimal mark are early and no names as well.
+  if (std::any_of(rows[above].fields.begin(), rows[above].fields.end(),
+                  [](const std::string& field) { return time_rank(column_name(field)) > 0; }))
+    heading = above;
   if (is_vernier(head, reading)) {
     units = &rows[reading.first - 1];
     heading = reading.first - 3;

@@ -103,6 +103,9 @@ TEST_F(TraceDialect, ScansMayBeginBelowRowsOfTime) {
     values.push_back(i);
   }
   expect_values(content, values);
+  // Values with another decimal mark are no names.
+  expect_refused("0,00;1,5\n0;2,5\n" + std::string{"0.02;3.5\n0.03;4.5\n0.04;5.5\n0.05;6.5\n0.06;7.5\n"},
+                 "the file has no heading");
 }
 
 TEST_F(TraceDialect, RowsOfUnitsAndCommentsFollowTheNames) {
