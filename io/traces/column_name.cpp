@@ -24,6 +24,8 @@ constexpr std::array<std::string_view, 28> kTimes{
     "micros",  "elapsed",     "x_value",    "temps",    "tempo",    "tiempo",    "datetime",
     "seconds", "sekunden",    "laufzeit",   "tid",      "aika",     "uhrzeit",   "runtime",
     "время",   "zeitstempel", "horodatage", "heure",    "hora",     "date/time", "zeitpunkt"};
+/// Parts of a test, folded.
+constexpr std::array<std::string_view, 5> kParts{"cycle", "step", "segment", "zyklus", "schritt"};
 /// Units in folded form that are written as words in any case.
 constexpr std::array<std::string_view, 13> kUnitWords{"msec",    "usec",   "sec",     "secs", "second",
                                                       "seconds", "newton", "newtons", "gram", "grams",
@@ -107,10 +109,14 @@ ColumnName column_name(std::string_view heading, std::string_view units_cell) {
 int time_rank(const ColumnName& column) {
   const std::string whole = folded(column.name);
   const std::string word = first_word(whole);
+  // The time of a part begins anew with each part.
+  const bool is_of_part = std::any_of(kParts.begin(), kParts.end(), [&](std::string_view part) {
+    return whole.find(part) != std::string::npos;
+  });
   if (word == "t") return 1;
   return has(kTimes, word) || word.starts_with("time_") || word.ends_with("_time") || word == "date" ||
                  whole.find(" time") != std::string::npos
-             ? 2
+             ? (is_of_part ? 1 : 2)
              : 0;
 }
 

@@ -358,6 +358,13 @@ TEST_F(TraceImport, UnitOfTheTimeIsItsHeadingsOrFoundByInspection) {
   }
 }
 
+TEST_F(TraceImport, TimeOfTheWholeTestIsPreferredToThatOfItsCycles) {
+  const auto record =
+      expect_values("Total Time (s),Cycle Elapsed Time (s),F\n0.0,0.0,1\n0.1,0.1,2\n0.2,0.0,3\n0.3,0.1,4\n",
+                    {1.0, 2.0, 3.0, 4.0});
+  EXPECT_THAT(record.scan, ElementsAre(0, 1, 2, 3));
+}
+
 TEST_F(TraceImport, WithoutTimesTheRateIsNeeded) {
   expect_refused("F\n1\n2\n", "--rate HZ");
   // A column for times in which nothing stands.
