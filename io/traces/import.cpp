@@ -305,8 +305,14 @@ class Importer {
       unit_s = unit->seconds;
       grid_options_.time_unit = unit->name;
       start_ns_ = start_of(table_, unit_s);
+      // Clock times without an offset are up to half a day from UTC.
+      constexpr std::int64_t kDay_ns = 86'400'000'000'000;
+      if (start_ns_ && request_.now_ns && *start_ns_ > *request_.now_ns + kDay_ns) {
+        note("no start time: by the time column it lies in the future");
+        start_ns_.reset();
+      }
       note("time from column {} \"{}\" in {}{}", *columns_.time + 1, base::one_line(column.text, 40),
-           unit->name, unit->inspected ? ", by inspection" : "");
+           unit->name, unit->inspected ? ", by inspection" + unit->rates : "");
     }
     time_s_ = RowView{table_.time, 0.0, unit_s, request_.reverse};
     grid_options_.digit_s = std::pow(10.0, -table_.time_decimals) * unit_s;

@@ -358,6 +358,41 @@ TEST_F(TraceImport, UnitOfTheTimeIsItsHeadingsOrFoundByInspection) {
   }
 }
 
+TEST_F(TraceImport, UnitsInTheCellsOfTheTimeCount) {
+  const std::vector<double> three{1.0, 2.0, 3.0};
+  for (const char* const content :
+       {"Time,F\n990 ms,1\n995 ms,2\n1.000 s,3\n", "t (s),F\n0 ms,1\n5 ms,2\n10 ms,3\n",
+        "t,F\n0 msec,1\n5 msec,2\n10 msec,3\n"})
+    EXPECT_NEAR(expect_values(content, three).header.board.scan_rate_granted_Hz, 200.0, 1e-6);
+  expect_refused("t,F\n0 ms,1\n5,2\n10 ms,3\n",
+                 "trace.csv:3: column 't' is '5': a time has one of the units");
+  expect_refused("t,F\n0 cs,1\n5 cs,2\n10 cs,3\n", "trace.csv:2: column 't' is '0 cs'");
+}
+
+// Windows counts 100 ns since 1601. LabVIEW's seconds since 1904 look like those of a year to come.
+TEST_F(TraceImport, TimesOfOtherEpochsAreKnownOrTellNoStart) {
+  std::string windows = "Timestamp,F\n";
+  std::string labview = "Time,F\n";
+  std::string steps = "Time,F\n";
+  for (int i = 0; i < 2000; ++i) {
+    windows += fmt::format("1317215520{:08},1\n", 50000 * i);
+    labview += fmt::format("36105264{:02}.{:03},1\n", i / 200, 5 * (i % 200));
+    steps += fmt::format("{},1\n", i);
+  }
+  request_.now_ns = kNewYear_ns;
+  auto imported = import(windows);
+  ASSERT_TRUE(imported) << imported.error().message;
+  EXPECT_NEAR(imported->tests[0].record.header.board.scan_rate_granted_Hz, 200.0, 0.01);
+  EXPECT_NEAR(static_cast<double>(*imported->tests[0].record.header.start_realtime_ns), 1'527'681'600e9, 1e6);
+  imported = import(labview);
+  ASSERT_TRUE(imported) << imported.error().message;
+  EXPECT_FALSE(imported->tests[0].record.header.start_realtime_ns);
+  EXPECT_THAT(imported->report, HasSubstr("no start time"));
+  imported = import(steps);
+  ASSERT_TRUE(imported) << imported.error().message;
+  EXPECT_THAT(imported->report, HasSubstr("in ms, by inspection: 1000 Hz; --time-unit s would be 1 Hz"));
+}
+
 TEST_F(TraceImport, TimeOfTheWholeTestIsPreferredToThatOfItsCycles) {
   const auto record =
       expect_values("Total Time (s),Cycle Elapsed Time (s),F\n0.0,0.0,1\n0.1,0.1,2\n0.2,0.0,3\n0.3,0.1,4\n",
