@@ -337,6 +337,7 @@ class Importer {
     const auto run = std::make_shared<record::ScanColumns>(request_.scratch_folder);
     double rate_Hz = 0.0;
     bool each_row_counts = false;
+    gaps_are_estimated_ = false;
     if (time_s_.empty()) {
       rate_Hz = *request_.rate_Hz;
       Grid grid;
@@ -350,6 +351,11 @@ class Importer {
       });
       if (!grid) return tl::unexpected(grid.error());
       tell(*grid, begin);
+      if (!grid->rate_checked) {
+        const auto missing = grid->index.back() + 1 - static_cast<daq::ScanIndex>(count);
+        gaps_are_estimated_ = missing > 0;
+        if (missing > 0) note("about {} scans are missing where the time column jumps", missing);
+      }
       rate_Hz = grid->rate_Hz;
       each_row_counts =
           !grid->rate_checked && grid->index.back() + 1 == static_cast<daq::ScanIndex>(grid->index.size());
@@ -423,7 +429,8 @@ class Importer {
       test.record.header.start_realtime_ns = start_of(next);
       for (std::size_t i = begin; i < end; ++i) {
         if (scan[i] > next)
-          test.record.gaps.push_back({next, scan[i] - next, false, daq::GapCause::kMissingScans});
+          test.record.gaps.push_back(
+              {next, scan[i] - next, gaps_are_estimated_, daq::GapCause::kMissingScans});
         next = scan[i] + 1;
       }
       imported_.tests.push_back(std::move(test));
@@ -464,6 +471,7 @@ class Importer {
   RawQuantity quantity_ = RawQuantity::kForce_N;
   double scale_ = 1.0;
   std::optional<daq::LoadCell> load_cell_;
+  bool gaps_are_estimated_ = false;  ///< In the run at hand, from a coarse clock.
   std::vector<base::Finding> findings_;
   std::string notes_;
   Imported imported_;
