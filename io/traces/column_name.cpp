@@ -30,8 +30,14 @@ constexpr std::array<std::string_view, 5> kParts{"cycle", "step", "segment", "zy
 constexpr std::array<std::string_view, 13> kUnitWords{"msec",    "usec",   "sec",     "secs", "second",
                                                       "seconds", "newton", "newtons", "gram", "grams",
                                                       "volt",    "volts",  "min"};
-constexpr std::array<std::string_view, 9> kCounters{"scan", "sample", "samples", "point", "no",
-                                                    "no.",  "nr",     "index",   "n"};
+/// What is counted, folded and in the singular: "Sample No.", "Points".
+constexpr std::array<std::string_view, 17> kCounted{
+    "scan",   "sample", "point", "data point", "datapoint", "datenpunkt", "messpunkt", "record", "reading",
+    "packet", "zähler", "row",   "frame",      "seq",       "n",          "i",         "lfd"};
+/// Words for a number, folded, alone or behind what is counted.
+constexpr std::array<std::string_view, 14> kNumberWords{"#",      "no",     "no.",   "nr",     "nr.",
+                                                        "n°",     "number", "num",   "index",  "idx",
+                                                        "nummer", "numéro", "count", "counter"};
 
 template <typename Words>
 bool has(const Words& words, std::string_view text) {
@@ -120,6 +126,19 @@ int time_rank(const ColumnName& column) {
              : 0;
 }
 
-bool is_scan_counter(const ColumnName& column) { return has(kCounters, folded(column.name)); }
+bool is_scan_counter(const ColumnName& column) {
+  const std::string name = folded(column.name);
+  if (has(kNumberWords, name)) return true;
+  std::string_view word = name;
+  const std::size_t end = word.find_last_of(" _");
+  if (word.ends_with('#')) {
+    word.remove_suffix(1);
+  } else if (end != std::string_view::npos && has(kNumberWords, word.substr(end + 1))) {
+    word = word.substr(0, end);
+  }
+  word = trimmed(word);
+  if (word.ends_with('.') || (word.ends_with('s') && word.size() > 1)) word.remove_suffix(1);
+  return has(kCounted, word);
+}
 
 }  // namespace stickslip::traces

@@ -274,6 +274,44 @@ std::vector<std::size_t> runs_in(const RowView& time_s) {
   return runs;
 }
 
+bool is_count(const RowView& column) {
+  const Times count{column};
+  const double middle = count.size() < 2 ? 0.0 : count.median_step();
+  std::size_t same = 0;
+  for (std::size_t i = 0; i < count.steps(); ++i) same += count.step(i) == middle ? 1U : 0U;
+  return middle != 0.0 && middle == std::floor(middle) && 2 * same > count.steps();
+}
+
+base::LongColumn<double> continued(base::LongColumn<double> column, double first, bool counts,
+                                   const std::filesystem::path& scratch_folder) {
+  if (column.size() < 2) return column;
+  const Times rows{RowView{column, -first, 1.0, false}};
+  double highest = rows[0];
+  bool falls = false;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    highest = std::max(highest, rows[i]);
+    falls = falls || rows[i] < rows[i - 1];
+  }
+  if (!falls) return column;
+  const double step = rows.median_step();
+  for (const double wrap : {0x1p8, 0x1p16, 0x1p24, 0x1p32}) {
+    // It has come to within a step of the end, or 0.1 % where rows are missing there.
+    if (highest >= wrap || highest < wrap - std::max(step, 1e-3 * wrap) || !(step > 0.0)) continue;
+    if (wrap == 0x1p8 && !counts) return column;
+    base::LongColumn<double> whole{scratch_folder};
+    double added = 0.0;
+    double before = rows[0];
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const double now = rows[i];
+      if (now < before && now + wrap - before < 0.25 * wrap) added += wrap;
+      before = now;
+      whole.push_back(now - first + added);
+    }
+    return whole;
+  }
+  return column;
+}
+
 base::Result<Grid> grid_of(const RowView& all_times, const GridOptions& options, const Place& place) {
   Grid grid;
   Times time{all_times};

@@ -163,6 +163,15 @@ class Importer {
     if (!table) return tl::unexpected(table.error());
     table_ = std::move(*table);
     row_count_ = table_.value.size();
+    if (table_.time_decimals <= 0 && !table_.time_in_seconds)
+      table_.time = continued(std::move(table_.time), table_.first_time, columns_.counts_scans,
+                              request_.scratch_folder);
+    if (columns_.counts_scans && !is_count(RowView{table_.time, 0.0, 1.0, false})) {
+      note("column \"{}\" is not read: it does not count the rows",
+           base::one_line(dialect_.columns[*columns_.time].text, 40));
+      columns_.time.reset();
+      columns_.counts_scans = false;
+    }
     imported_.report = dialect_.text(columns_.value);
     if (row_count_ < 2) {
       return base::usage_error("{}: there {} of scans; two at least are needed", request_.path,
@@ -346,12 +355,12 @@ class Importer {
     } else {
       const RowView time = time_s_.part(begin, count);
       grid_options_.scratch_folder = request_.scratch_folder;
-      const auto grid = grid_of(time, grid_options_, [this, begin](std::size_t row) {
+      auto grid = grid_of(time, grid_options_, [this, begin](std::size_t row) {
         return fmt::format("{}:{}", request_.path, line(begin + row));
       });
       if (!grid) return tl::unexpected(grid.error());
       tell(*grid, begin);
-      if (!grid->rate_checked) {
+      if (!grid->rate_checked && !count_scans(*grid, begin, count)) {
         const auto missing = grid->index.back() + 1 - static_cast<daq::ScanIndex>(count);
         gaps_are_estimated_ = missing > 0;
         if (missing > 0) note("about {} scans are missing where the time column jumps", missing);
@@ -378,6 +387,28 @@ class Importer {
                                               : time_s_[begin] + static_cast<double>(scan) / rate_Hz;
       return later(*start_ns_, offset_s - time_s_.front());
     });
+  }
+
+  /// Indices of a column that counts the scans, which a coarse clock does not tell. \return false if there
+  /// is none: then grid stays.
+  bool count_scans(Grid& grid, std::size_t begin, std::size_t count) {
+    const auto column = counter_column_of(dialect_, columns_.value);
+    if (!column || column == columns_.time) return false;
+    if (counter_.empty()) {
+      auto table = read_table(source_, dialect_, columns_.value, column, request_.scratch_folder);
+      if (!table || table->time.size() != row_count_) return false;
+      counter_ = continued(std::move(table->time), table->first_time, true, request_.scratch_folder);
+    }
+    const RowView rows = RowView{counter_, 0.0, 1.0, request_.reverse}.part(begin, count);
+    if (!is_count(rows)) return false;
+    GridOptions options;
+    options.rate_Hz = 1.0;
+    options.scratch_folder = request_.scratch_folder;
+    auto counted = grid_of(rows, options, [](std::size_t) { return std::string{}; });
+    if (!counted) return false;
+    grid.index = std::move(counted->index);
+    note("column \"{}\" counts the scans", base::one_line(dialect_.columns[*column].text, 40));
+    return true;
   }
 
   void tell(const Grid& grid, std::size_t begin) {
@@ -462,6 +493,7 @@ class Importer {
   Dialect dialect_;
   Columns columns_;
   TraceTable table_;
+  base::LongColumn<double> counter_;  ///< Of the scans, beside a coarse clock; else empty.
   std::size_t row_count_ = 0;
   RowView value_;   ///< In board.quantity.
   RowView time_s_;  ///< Empty without a column of times.

@@ -31,7 +31,7 @@ std::optional<std::size_t> best_before(const Dialect& dialect, std::size_t colum
   std::optional<std::size_t> best;
   int best_rank = 0;
   for (std::size_t c = 0; c < dialect.columns.size(); ++c) {
-    int own = c == column || dialect.empty[c] ? 0 : rank(dialect.columns[c]);
+    int own = c == column || dialect.empty[c] ? 0 : rank(c);
     if (own > 0 && dialect.numbers) {
       // The group counts more than the name.
       constexpr int kRanks = 10;
@@ -550,12 +550,13 @@ base::Result<std::size_t> find_column(const Dialect& dialect, const std::string&
 }
 
 std::optional<std::size_t> time_column_of(const Dialect& dialect, std::size_t value_column) {
-  return best_before(dialect, value_column, time_rank);
+  return best_before(dialect, value_column, [&](std::size_t c) { return time_rank(dialect.columns[c]); });
 }
 
 std::optional<std::size_t> counter_column_of(const Dialect& dialect, std::size_t value_column) {
-  return best_before(dialect, value_column,
-                     [](const ColumnName& column) { return is_scan_counter(column) ? 1 : 0; });
+  return best_before(dialect, value_column, [&](std::size_t c) {
+    return is_scan_counter(dialect.columns[c]) && (dialect.numbers || dialect.numeric[c]) ? 1 : 0;
+  });
 }
 
 std::int64_t TraceTable::line(std::size_t row) const {

@@ -164,6 +164,25 @@ TEST(TraceGrid, CoarseClockRefusesAnotherRate) {
   EXPECT_TRUE(grid(time, options));
 }
 
+TEST(TraceGrid, CountersContinueWhereTheyStartAgain) {
+  base::LongColumn<double> count;
+  for (int i = 0; i < 2000; ++i) {
+    if (i != 1000) count.push_back(i % 256);
+  }
+  EXPECT_TRUE(is_count(RowView{count, 0.0, 1.0, false}));
+  const auto whole = continued(count, 0.0, true, {});
+  EXPECT_EQ(whole[999], 999.0);
+  EXPECT_EQ(whole.back(), 1999.0);
+  EXPECT_EQ(continued(count, 0.0, false, {}).back(), 1999 % 256);
+  // Two runs of a counter far from any power of two.
+  base::LongColumn<double> twice;
+  for (int i = 0; i < 2000; ++i) twice.push_back(i % 1000);
+  EXPECT_EQ(continued(twice, 0.0, true, {}).back(), 999.0);
+  base::LongColumn<double> still;
+  still.assign(10, 3.0);
+  EXPECT_FALSE(is_count(RowView{still, 0.0, 1.0, false}));
+}
+
 // At 100 Hz printed to 0.01 s, rows that are lost here and there look like a lower rate.
 TEST(TraceGrid, CoarseTimesWithLostRowsNeedTheRate) {
   auto time = times(1000, 100.0, 0.01);

@@ -404,6 +404,28 @@ TEST_F(TraceImport, TimeOfTheWholeTestIsPreferredToThatOfItsCycles) {
   EXPECT_THAT(record.scan, ElementsAre(0, 1, 2, 3));
 }
 
+// Ten rows are lost; the counter tells, beside a clock of whole seconds too.
+TEST_F(TraceImport, CounterTellsMissingRows) {
+  request_.rate_Hz = 100.0;
+  for (const char* const name :
+       {"Sample #", "Scan No.", "Points", "Lfd. Nr.", "N°", "RECORD", "Zähler", "Point number", "#", "idx"}) {
+    for (const bool clock : {false, true}) {
+      std::string content = fmt::format("\"{}\",{}F\n", name, clock ? "Time," : "");
+      for (int i = 0; i < 500; ++i) {
+        if (i < 310 || i >= 320)
+          content += fmt::format("{},{}1\n", i, clock ? fmt::format("12:00:0{},", i / 100) : "");
+      }
+      const auto imported = import(content);
+      ASSERT_TRUE(imported) << imported.error().message;
+      EXPECT_THAT(imported->tests[0].record.gaps, SizeIs(1)) << name << clock;
+      EXPECT_EQ(test::in_memory(imported->tests[0]).scan.back(), 499);
+    }
+  }
+  // Something else by the same name.
+  expect_values("Points,F\n7,1\n7,2\n7,3\n", {1.0, 2.0, 3.0});
+  EXPECT_THAT(report_, HasSubstr("does not count the rows"));
+}
+
 TEST_F(TraceImport, WithoutTimesTheRateIsNeeded) {
   expect_refused("F\n1\n2\n", "--rate HZ");
   // A column for times in which nothing stands.
