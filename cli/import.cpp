@@ -18,6 +18,7 @@
 #include "cli/transducer_options.hpp"
 #include "io/findings_text.hpp"
 
+#include "core/base/clock.hpp"
 #include "core/base/text.hpp"
 #include "core/base/version.hpp"
 #include "core/evaluation/analyse.hpp"
@@ -105,6 +106,7 @@ Result<traces::DialectOptions> dialect_of(const ImportOptions& options) {
 Result<traces::ImportRequest> request_of(const ImportOptions& options) {
   traces::ImportRequest request;
   request.path = options.file;
+  request.now_ns = base::make_system_clock()->realtime_ns();
   const auto dialect = dialect_of(options);
   if (!dialect) return tl::unexpected(dialect.error());
   request.dialect = *dialect;

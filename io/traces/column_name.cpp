@@ -24,13 +24,21 @@ constexpr std::array<std::string_view, 28> kTimes{
     "micros",  "elapsed",     "x_value",    "temps",    "tempo",    "tiempo",    "datetime",
     "seconds", "sekunden",    "laufzeit",   "tid",      "aika",     "uhrzeit",   "runtime",
     "время",   "zeitstempel", "horodatage", "heure",    "hora",     "date/time", "zeitpunkt"};
+/// Parts of a test, folded.
+constexpr std::array<std::string_view, 5> kParts{"cycle", "step", "segment", "zyklus", "schritt"};
 /// Units in folded form that are written as words in any case.
 constexpr std::array<std::string_view, 24> kUnitWords{
     "msec", "usec",  "sec",  "secs",     "second", "seconds", "newton", "newtons",
     "gram", "grams", "volt", "volts",    "min",    "gf",      "kgf",    "lbf",
     "ozf",  "lbs",   "kp",   "sekunden", "hours",  "hr",      "hrs",    "stunden"};
-constexpr std::array<std::string_view, 9> kCounters{"scan", "sample", "samples", "point", "no",
-                                                    "no.",  "nr",     "index",   "n"};
+/// What is counted, folded and in the singular: "Sample No.", "Points".
+constexpr std::array<std::string_view, 17> kCounted{
+    "scan",   "sample", "point", "data point", "datapoint", "datenpunkt", "messpunkt", "record", "reading",
+    "packet", "zähler", "row",   "frame",      "seq",       "n",          "i",         "lfd"};
+/// Words for a number, folded, alone or behind what is counted.
+constexpr std::array<std::string_view, 14> kNumberWords{"#",      "no",     "no.",   "nr",     "nr.",
+                                                        "n°",     "number", "num",   "index",  "idx",
+                                                        "nummer", "numéro", "count", "counter"};
 
 template <typename Words>
 bool has(const Words& words, std::string_view text) {
@@ -108,13 +116,30 @@ ColumnName column_name(std::string_view heading, std::string_view units_cell) {
 int time_rank(const ColumnName& column) {
   const std::string whole = folded(column.name);
   const std::string word = first_word(whole);
+  // The time of a part begins anew with each part.
+  const bool is_of_part = std::any_of(kParts.begin(), kParts.end(), [&](std::string_view part) {
+    return whole.find(part) != std::string::npos;
+  });
   if (word == "t") return 1;
   return has(kTimes, word) || word.starts_with("time_") || word.ends_with("_time") || word == "date" ||
                  whole.find(" time") != std::string::npos
-             ? 2
+             ? (is_of_part ? 1 : 2)
              : 0;
 }
 
-bool is_scan_counter(const ColumnName& column) { return has(kCounters, folded(column.name)); }
+bool is_scan_counter(const ColumnName& column) {
+  const std::string name = folded(column.name);
+  if (has(kNumberWords, name)) return true;
+  std::string_view word = name;
+  const std::size_t end = word.find_last_of(" _");
+  if (word.ends_with('#')) {
+    word.remove_suffix(1);
+  } else if (end != std::string_view::npos && has(kNumberWords, word.substr(end + 1))) {
+    word = word.substr(0, end);
+  }
+  word = trimmed(word);
+  if (word.ends_with('.') || (word.ends_with('s') && word.size() > 1)) word.remove_suffix(1);
+  return has(kCounted, word);
+}
 
 }  // namespace stickslip::traces

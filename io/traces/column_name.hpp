@@ -23,10 +23,11 @@ struct ColumnName {
 /// Equal for names that differ in case, in blanks, or in the form of the same Unicode characters (NFKC).
 [[nodiscard]] std::string folded(std::string_view text);
 
-/// How surely a column is a time by its name: 0 not, 1 "t", 2 a word for time.
+/// How surely a column is a time by its name: 0 not, 1 "t" or "Cycle Time", 2 a word for time.
 [[nodiscard]] int time_rank(const ColumnName& column);
 
-/// Whether it counts scans by its name: "scan", "sample", "point", "No".
+/// Whether it counts scans by its name: "scan", "Sample #", "Points", "Lfd. Nr.". Only its values tell
+/// surely.
 [[nodiscard]] bool is_scan_counter(const ColumnName& column);
 
 }  // namespace stickslip::traces

@@ -383,7 +383,7 @@ void find_heading(Reading& reading, const Head& head) {
   dialect.units_line = units == nullptr ? 0 : units->line;
   for (std::size_t c = 0; c < dialect.columns.size(); ++c) {
     std::string_view text = names[c];
-    while (c == 0 && text.starts_with('#')) text.remove_prefix(1);
+    while (c == 0 && text.starts_with('#') && !trimmed(text.substr(1)).empty()) text.remove_prefix(1);
     dialect.columns[c] =
         column_name(text, units != nullptr && c < units->fields.size() ? units->fields[c] : std::string{});
   }

@@ -188,6 +188,68 @@ base::Result<void> check_rate(const GridOptions& options, double rate_Hz, const 
       at, rate_Hz, *options.rate_Hz);
 }
 
+/// Rows in which a coarse clock shows another time than in the row before.
+class Ticks {
+ public:
+  Ticks(const Times& time, double rate_Hz, const std::filesystem::path& scratch_folder)
+      : time_(time), rate_Hz_(rate_Hz), row_(scratch_folder) {
+    for (std::size_t i = 1; i < time.size(); ++i) {
+      if (time[i] != time[i - 1]) row_.push_back(i);
+    }
+    resolution_s_ = signal::median_of(row_.size(), [this](std::size_t k) { return step(k); });
+  }
+
+  /// One index a row; a tick that is too long for the clock and the rate stands for missing rows.
+  [[nodiscard]] Index indices(const std::filesystem::path& scratch_folder) const {
+    Index index{scratch_folder};
+    std::int64_t missing = 0;
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < time_.size(); ++i) {
+      if (k < row_.size() && row_[k] == i) missing += missing_at(k++);
+      index.push_back(static_cast<std::int64_t>(i) + missing);
+    }
+    return index;
+  }
+
+  /// Refuses a rate that is none of the clock's, with its resolution at both ends.
+  [[nodiscard]] base::Result<void> check(const std::string& at) const {
+    double rows = 0.0;
+    double span_s = 0.0;
+    for (std::size_t k = 1; k < row_.size(); ++k) {
+      if (is_gap(k) || is_gap(k - 1)) continue;
+      rows += static_cast<double>(row_[k] - row_[k - 1]);
+      span_s += step(k);
+    }
+    const bool is_slower = rows > (1.0 + kRateTolerance) * rate_Hz_ * (span_s + resolution_s_);
+    const bool is_faster = rows < (1.0 - kRateTolerance) * rate_Hz_ * (span_s - resolution_s_);
+    if (!is_slower && !is_faster) return {};
+    return base::usage_error(
+        "{}: the time column shows {} rows in {:.6g} s, --rate says {:.6g} Hz: give --rate \"{:.4g} Hz\" to "
+        "go by the column, or --time-column none to go by the rate",
+        at, rows, span_s, rate_Hz_, rows / span_s);
+  }
+
+ private:
+  [[nodiscard]] double step(std::size_t k) const { return time_[row_[k]] - time_[row_[k] - 1]; }
+  [[nodiscard]] bool is_gap(std::size_t k) const {
+    return step(k) > kLongestStep * resolution_s_ + 1.0 / rate_Hz_;
+  }
+  [[nodiscard]] std::int64_t missing_at(std::size_t k) const {
+    if (!is_gap(k)) return 0;
+    // The ticks on both sides tell the time to an interval, the step alone to the clock's resolution.
+    const bool between = k > 0 && k + 1 < row_.size() && !is_gap(k - 1) && !is_gap(k + 1);
+    const std::size_t first = between ? row_[k - 1] : row_[k] - 1;
+    const std::size_t last = between ? row_[k + 1] : row_[k];
+    const auto scans = std::llround((time_[last] - time_[first]) * rate_Hz_);
+    return std::max<std::int64_t>(0, scans - static_cast<std::int64_t>(last - first));
+  }
+
+  const Times& time_;
+  double rate_Hz_;
+  base::LongColumn<std::size_t> row_;
+  double resolution_s_ = 0.0;
+};
+
 }  // namespace
 
 Index counted(std::size_t count, const std::filesystem::path& scratch_folder) {
@@ -210,6 +272,44 @@ std::vector<std::size_t> runs_in(const RowView& time_s) {
   // A clock that runs backwards starts again at every row; that is no run.
   if (runs.size() > 1 && runs.size() > time_s.size() / 4) return {0};
   return runs;
+}
+
+bool is_count(const RowView& column) {
+  const Times count{column};
+  const double middle = count.size() < 2 ? 0.0 : count.median_step();
+  std::size_t same = 0;
+  for (std::size_t i = 0; i < count.steps(); ++i) same += count.step(i) == middle ? 1U : 0U;
+  return middle != 0.0 && middle == std::floor(middle) && 2 * same > count.steps();
+}
+
+base::LongColumn<double> continued(base::LongColumn<double> column, double first, bool counts,
+                                   const std::filesystem::path& scratch_folder) {
+  if (column.size() < 2) return column;
+  const Times rows{RowView{column, -first, 1.0, false}};
+  double highest = rows[0];
+  bool falls = false;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    highest = std::max(highest, rows[i]);
+    falls = falls || rows[i] < rows[i - 1];
+  }
+  if (!falls) return column;
+  const double step = rows.median_step();
+  for (const double wrap : {0x1p8, 0x1p16, 0x1p24, 0x1p32}) {
+    // It has come to within a step of the end, or 0.1 % where rows are missing there.
+    if (highest >= wrap || highest < wrap - std::max(step, 1e-3 * wrap) || !(step > 0.0)) continue;
+    if (wrap == 0x1p8 && !counts) return column;
+    base::LongColumn<double> whole{scratch_folder};
+    double added = 0.0;
+    double before = rows[0];
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const double now = rows[i];
+      if (now < before && now + wrap - before < 0.25 * wrap) added += wrap;
+      before = now;
+      whole.push_back(now - first + added);
+    }
+    return whole;
+  }
+  return column;
 }
 
 base::Result<Grid> grid_of(const RowView& all_times, const GridOptions& options, const Place& place) {
@@ -247,7 +347,9 @@ base::Result<Grid> grid_of(const RowView& all_times, const GridOptions& options,
     }
     grid.rate_Hz = *options.rate_Hz;
     grid.rate_checked = false;
-    grid.index = counted(all_times.size(), options.scratch_folder);
+    const Ticks ticks{time, grid.rate_Hz, options.scratch_folder};
+    if (const auto rate = ticks.check(place(0)); !rate) return tl::unexpected(rate.error());
+    grid.index = ticks.indices(options.scratch_folder);
     grid.doubled.clear();
     return grid;
   }

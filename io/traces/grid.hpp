@@ -52,6 +52,14 @@ using Place = std::function<std::string(std::size_t row)>;
 /// First rows of the runs of a column in which a clock starts again. One element, 0, for one run.
 [[nodiscard]] std::vector<std::size_t> runs_in(const RowView& time_s);
 
+/// Whether most rows rise or fall by the same whole number, as in a column that counts scans.
+[[nodiscard]] bool is_count(const RowView& column);
+
+/// The column, continued where its whole numbers start again at 2^16, 2^24 or 2^32, as counters do.
+/// \param first  what was subtracted from the column. \param counts  2^8 is looked for too.
+[[nodiscard]] base::LongColumn<double> continued(base::LongColumn<double> column, double first, bool counts,
+                                                 const std::filesystem::path& scratch_folder);
+
 /// \param time_s  of the rows of one run, finite, at least two.
 /// Errors, kUsage, each with its remedy: times that do not advance, run backwards, are doubled, are too
 /// coarse, are unequal by more than kLargestJitter, or have another rate than the stated one.

@@ -161,6 +161,15 @@ class Importer {
     if (!table) return tl::unexpected(table.error());
     table_ = std::move(*table);
     row_count_ = table_.value.size();
+    if (table_.time_decimals <= 0 && !table_.time_in_seconds)
+      table_.time = continued(std::move(table_.time), table_.first_time, columns_.counts_scans,
+                              request_.scratch_folder);
+    if (columns_.counts_scans && !is_count(RowView{table_.time, 0.0, 1.0, false})) {
+      note("column \"{}\" is not read: it does not count the rows",
+           base::one_line(dialect_.columns[*columns_.time].text, 40));
+      columns_.time.reset();
+      columns_.counts_scans = false;
+    }
     imported_.report = dialect_.text(columns_.value);
     if (row_count_ < 2) {
       return base::usage_error("{}: there {} of scans; two at least are needed", request_.path,
@@ -303,8 +312,14 @@ class Importer {
       unit_s = unit->seconds;
       grid_options_.time_unit = unit->name;
       start_ns_ = start_of(table_, unit_s);
+      // Clock times without an offset are up to half a day from UTC.
+      constexpr std::int64_t kDay_ns = 86'400'000'000'000;
+      if (start_ns_ && request_.now_ns && *start_ns_ > *request_.now_ns + kDay_ns) {
+        note("no start time: by the time column it lies in the future");
+        start_ns_.reset();
+      }
       note("time from column {} \"{}\" in {}{}", *columns_.time + 1, base::one_line(column.text, 40),
-           unit->name, unit->inspected ? ", by inspection" : "");
+           unit->name, unit->inspected ? ", by inspection" + unit->rates : "");
     }
     time_s_ = RowView{table_.time, 0.0, unit_s, request_.reverse};
     grid_options_.digit_s = std::pow(10.0, -table_.time_decimals) * unit_s;
@@ -329,6 +344,7 @@ class Importer {
     const auto run = std::make_shared<record::ScanColumns>(request_.scratch_folder);
     double rate_Hz = 0.0;
     bool each_row_counts = false;
+    gaps_are_estimated_ = false;
     if (time_s_.empty()) {
       rate_Hz = *request_.rate_Hz;
       Grid grid;
@@ -337,11 +353,16 @@ class Importer {
     } else {
       const RowView time = time_s_.part(begin, count);
       grid_options_.scratch_folder = request_.scratch_folder;
-      const auto grid = grid_of(time, grid_options_, [this, begin](std::size_t row) {
+      auto grid = grid_of(time, grid_options_, [this, begin](std::size_t row) {
         return fmt::format("{}:{}", request_.path, line(begin + row));
       });
       if (!grid) return tl::unexpected(grid.error());
       tell(*grid, begin);
+      if (!grid->rate_checked && !count_scans(*grid, begin, count)) {
+        const auto missing = grid->index.back() + 1 - static_cast<daq::ScanIndex>(count);
+        gaps_are_estimated_ = missing > 0;
+        if (missing > 0) note("about {} scans are missing where the time column jumps", missing);
+      }
       rate_Hz = grid->rate_Hz;
       each_row_counts =
           !grid->rate_checked && grid->index.back() + 1 == static_cast<daq::ScanIndex>(grid->index.size());
@@ -364,6 +385,28 @@ class Importer {
                                               : time_s_[begin] + static_cast<double>(scan) / rate_Hz;
       return later(*start_ns_, offset_s - time_s_.front());
     });
+  }
+
+  /// Indices of a column that counts the scans, which a coarse clock does not tell. \return false if there
+  /// is none: then grid stays.
+  bool count_scans(Grid& grid, std::size_t begin, std::size_t count) {
+    const auto column = counter_column_of(dialect_, columns_.value);
+    if (!column || column == columns_.time) return false;
+    if (counter_.empty()) {
+      auto table = read_table(source_, dialect_, columns_.value, column, request_.scratch_folder);
+      if (!table || table->time.size() != row_count_) return false;
+      counter_ = continued(std::move(table->time), table->first_time, true, request_.scratch_folder);
+    }
+    const RowView rows = RowView{counter_, 0.0, 1.0, request_.reverse}.part(begin, count);
+    if (!is_count(rows)) return false;
+    GridOptions options;
+    options.rate_Hz = 1.0;
+    options.scratch_folder = request_.scratch_folder;
+    auto counted = grid_of(rows, options, [](std::size_t) { return std::string{}; });
+    if (!counted) return false;
+    grid.index = std::move(counted->index);
+    note("column \"{}\" counts the scans", base::one_line(dialect_.columns[*column].text, 40));
+    return true;
   }
 
   void tell(const Grid& grid, std::size_t begin) {
@@ -422,7 +465,8 @@ class Importer {
       test.record.header.start_realtime_ns = start_of(next);
       for (std::size_t i = begin; i < end; ++i) {
         if (scan[i] > next)
-          test.record.gaps.push_back({next, scan[i] - next, false, daq::GapCause::kMissingScans});
+          test.record.gaps.push_back(
+              {next, scan[i] - next, gaps_are_estimated_, daq::GapCause::kMissingScans});
         next = scan[i] + 1;
       }
       imported_.tests.push_back(std::move(test));
@@ -454,6 +498,7 @@ class Importer {
   Dialect dialect_;
   Columns columns_;
   TraceTable table_;
+  base::LongColumn<double> counter_;  ///< Of the scans, beside a coarse clock; else empty.
   std::size_t row_count_ = 0;
   RowView value_;   ///< In board.quantity.
   RowView time_s_;  ///< Empty without a column of times.
@@ -463,6 +508,7 @@ class Importer {
   RawQuantity quantity_ = RawQuantity::kForce_N;
   double scale_ = 1.0;
   std::optional<daq::LoadCell> load_cell_;
+  bool gaps_are_estimated_ = false;  ///< In the run at hand, from a coarse clock.
   std::vector<base::Finding> findings_;
   std::string notes_;
   Imported imported_;

@@ -2,6 +2,7 @@
 /// Records from a trace that another program wrote: text, MATLAB or HDF5.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -27,6 +28,8 @@ struct ImportRequest {
   std::string time_column;  ///< Heading or number; empty: by its name; "none": no column is a time.
   std::string time_unit;    ///< s, ms, us, ns, min or h; empty: of the heading, else by inspection.
   std::optional<double> rate_Hz;
+  /// Now, ns since 1970: a later start is left out, as of times since 1904. Unlimited if absent.
+  std::optional<std::int64_t> now_ns{};
   bool invert = false;        ///< The force is negative while sliding.
   bool reverse = false;       ///< Rows from the last to the first.
   bool resample = false;      ///< Scans at equal intervals by linear interpolation.

@@ -17,7 +17,11 @@ struct TimeUnit {
   std::string name;
   double seconds = 1.0;
   bool inspected = false;  ///< Nothing states it.
+  std::string rates{};     ///< By inspection: the rate, and what other units would give, for people.
 };
+
+/// As base::parse_quantity() takes it: "ms" for "msec", "s" for "Sek." …
+[[nodiscard]] std::string plain_time_unit(const std::string& unit);
 
 /// The unit that the request or the heading states; else the one in which rate and length are those of a
 /// friction test. Errors: kUsage if the unit is no time, or if several units are possible.
@@ -28,6 +32,7 @@ struct TimeUnit {
 inline constexpr double kFarthestEpoch_s = 9e9;
 
 /// Start of the first row since 1970, ns, where the times tell; none beyond kFarthestEpoch_s.
+/// Times of 1.2e10 s to 1.6e10 s are since 1601, as those of Windows.
 [[nodiscard]] std::optional<std::int64_t> start_of(const TraceTable& table, double unit_s);
 
 }  // namespace stickslip::traces

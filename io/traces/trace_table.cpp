@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <future>
 #include <limits>
 #include <set>
@@ -12,9 +13,11 @@
 #include <utility>
 
 #include "io/traces/number_file.hpp"
+#include "io/traces/time_unit.hpp"
 #include "io/traces/trace_time.hpp"
 
 #include "core/base/nan.hpp"
+#include "core/base/quantity.hpp"
 #include "core/base/wording.hpp"
 
 namespace stickslip::traces {
@@ -28,7 +31,7 @@ std::optional<std::size_t> best_before(const Dialect& dialect, std::size_t colum
   std::optional<std::size_t> best;
   int best_rank = 0;
   for (std::size_t c = 0; c < dialect.columns.size(); ++c) {
-    int own = c == column || dialect.empty[c] ? 0 : rank(dialect.columns[c]);
+    int own = c == column || dialect.empty[c] ? 0 : rank(c);
     if (own > 0 && dialect.numbers) {
       // The group counts more than the name.
       constexpr int kRanks = 10;
@@ -372,6 +375,13 @@ class TableReader {
       time_text = trimmed(dialect_.content(*time_column_, field(fields, *time_column_)));
       const Cell number = cell(*time_column_, time_text);
       time = read_time_cell(time_text, number, dialect_.decimal);
+      if (time && number.kind == CellKind::kNumber && !to_seconds(*time, number.unit)) {
+        return base::usage_error(
+            "{}:{}: {} is '{}': a time has one of the units s, ms, us, ns, min and h, in all rows or in "
+            "none; "
+            "correct the line",
+            path_, line, column_shown(*time_column_), base::one_line(time_text, kLongestShown));
+      }
       no_time = !time;
       time_is_hole = no_time && number.kind != CellKind::kText;
     }
@@ -431,6 +441,23 @@ class TableReader {
     return {};
   }
 
+  /// By the unit in its cell, if that has one. \return false if that is no time or only some rows have one.
+  bool to_seconds(TimeCell& time, std::string_view unit) {
+    if (unit.empty()) return !table_.time_unit_in_cells;
+    if (!table_.time.empty() && !table_.time_unit_in_cells) return false;
+    if (unit != time_unit_) {
+      const auto seconds =
+          base::parse_quantity("1 " + plain_time_unit(std::string{unit}), base::Dimension::kTime);
+      if (!seconds) return false;
+      time_unit_ = unit;
+      time_unit_s_ = *seconds;
+    }
+    table_.time_unit_in_cells = true;
+    time.value *= time_unit_s_;
+    time.decimals -= static_cast<int>(std::ceil(std::log10(time_unit_s_) - 1e-9));
+    return true;
+  }
+
   /// "0.123" above "6,944" in one column: 6944 or 6.944, nobody can tell.
   base::Result<void> check_mark(const Cell& value, std::string_view text, std::int64_t line) {
     if (dialect_.decimal_is_stated || (!value.one_group && value.decimals <= 0)) return {};
@@ -454,7 +481,7 @@ class TableReader {
       if (table_.time.empty()) {
         table_.first_time = time->value;
         table_.date_s = time->date_s;
-        table_.time_in_seconds = time->in_seconds;
+        table_.time_in_seconds = time->in_seconds || table_.time_unit_in_cells;
       }
       constexpr double kDay_s = 86'400.0;
       // A clock without a date that goes back by more than half a day has passed midnight.
@@ -525,6 +552,8 @@ class TableReader {
     std::int64_t line = 0;
     std::string text;
   };
+  std::string time_unit_;                   ///< In the cell of the last row.
+  double time_unit_s_ = 1.0;                ///< Of it.
   MarkPlace grouped_;                       ///< First value with Cell::one_group.
   MarkPlace decimal_;                       ///< First value with decimals.
   std::size_t labelled_ = 0;                ///< Rows with a label since the last one without.
@@ -610,12 +639,13 @@ base::Result<std::size_t> find_column(const Dialect& dialect, const std::string&
 }
 
 std::optional<std::size_t> time_column_of(const Dialect& dialect, std::size_t value_column) {
-  return best_before(dialect, value_column, time_rank);
+  return best_before(dialect, value_column, [&](std::size_t c) { return time_rank(dialect.columns[c]); });
 }
 
 std::optional<std::size_t> counter_column_of(const Dialect& dialect, std::size_t value_column) {
-  return best_before(dialect, value_column,
-                     [](const ColumnName& column) { return is_scan_counter(column) ? 1 : 0; });
+  return best_before(dialect, value_column, [&](std::size_t c) {
+    return is_scan_counter(dialect.columns[c]) && (dialect.numbers || dialect.numeric[c]) ? 1 : 0;
+  });
 }
 
 std::int64_t TraceTable::line(std::size_t row) const {

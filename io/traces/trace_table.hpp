@@ -39,6 +39,7 @@ struct TraceTable {
   double first_time = 0.0;         ///< What was subtracted, without date_s.
   std::optional<std::int64_t> date_s;  ///< As TimeCell, of the first row.
   bool time_in_seconds = false;        ///< Clock times and dates.
+  bool time_unit_in_cells = false;     ///< "995 ms", "1.000 s": the times are in s.
   int time_decimals = 0;               ///< Most printed digits behind the decimal mark.
   std::string cell_unit;               ///< Behind each value; empty if there is none.
   std::string sha256;

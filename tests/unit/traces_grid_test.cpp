@@ -128,6 +128,61 @@ TEST(TraceGrid, CoarseTimesCannotCheckARate) {
   EXPECT_FALSE(found->rate_checked);
 }
 
+// More is lost than two ticks of a clock that stands for two rows or more.
+TEST(TraceGrid, CoarseClockShowsMissingRows) {
+  for (const double digit_s : {0.01, 0.1, 0.25}) {
+    auto time = times(1600, 200.0, 0.0);
+    for (double& t : time) t = digit_s * std::floor((t + 1e-9) / digit_s);
+    time.erase(time.begin() + 700, time.begin() + 700 + std::llround(500.0 * digit_s) + 45);
+    GridOptions options;
+    options.digit_s = digit_s;
+    options.rate_Hz = 200.0;
+    const auto found = grid(time, options);
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_EQ(found->index[699], 699);
+    EXPECT_NEAR(static_cast<double>(found->index.back()), 1599.0, 1.0) << digit_s;
+  }
+  // Ticks of a row more or less.
+  GridOptions options;
+  options.digit_s = 0.1;
+  options.rate_Hz = 340.0;
+  const auto found = grid(times(1000, 340.0, 0.1), options);
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_EQ(found->index.back(), 999);
+}
+
+TEST(TraceGrid, CoarseClockRefusesAnotherRate) {
+  auto time = times(1600, 200.0, 0.0);
+  for (double& t : time) t = std::floor(t + 1e-9);
+  GridOptions options;
+  options.digit_s = 1.0;
+  for (const double rate_Hz : {100.0, 2000.0}) {
+    options.rate_Hz = rate_Hz;
+    EXPECT_THAT(refusal(time, options), HasSubstr("give --rate \"200 Hz\""));
+  }
+  options.rate_Hz = 190.0;  // 6 s ± 1 s.
+  EXPECT_TRUE(grid(time, options));
+}
+
+TEST(TraceGrid, CountersContinueWhereTheyStartAgain) {
+  base::LongColumn<double> count;
+  for (int i = 0; i < 2000; ++i) {
+    if (i != 1000) count.push_back(i % 256);
+  }
+  EXPECT_TRUE(is_count(RowView{count, 0.0, 1.0, false}));
+  const auto whole = continued(count, 0.0, true, {});
+  EXPECT_EQ(whole[999], 999.0);
+  EXPECT_EQ(whole.back(), 1999.0);
+  EXPECT_EQ(continued(count, 0.0, false, {}).back(), 1999 % 256);
+  // Two runs of a counter far from any power of two.
+  base::LongColumn<double> twice;
+  for (int i = 0; i < 2000; ++i) twice.push_back(i % 1000);
+  EXPECT_EQ(continued(twice, 0.0, true, {}).back(), 999.0);
+  base::LongColumn<double> still;
+  still.assign(10, 3.0);
+  EXPECT_FALSE(is_count(RowView{still, 0.0, 1.0, false}));
+}
+
 // At 100 Hz printed to 0.01 s, rows that are lost here and there look like a lower rate.
 TEST(TraceGrid, CoarseTimesWithLostRowsNeedTheRate) {
   auto time = times(1000, 100.0, 0.01);

@@ -278,16 +278,20 @@ TEST_F(TraceImport, TestsOfOneTraceHaveTheirOwnStarts) {
   }
 }
 
-// A clock that shows whole seconds tells no rate; it does tell that an hour has passed.
+// A clock that shows whole seconds tells no rate; it does tell that an hour without rows has passed.
 TEST_F(TraceImport, ATestBehindAPauseStartsByItsOwnRow) {
   request_.rate_Hz = 10.0;
   const auto imported = import(fmt::format("Time,F\n{}", fmt::join(two_pulls(1, 0), "")));
   ASSERT_TRUE(imported) << imported.error().message;
   ASSERT_THAT(imported->tests, SizeIs(2));
   const base::ScanIndex first = test::in_memory(imported->tests[1]).scan.front();
-  constexpr std::int64_t kSecond_ns = 1'000'000'000;
-  const std::int64_t shown_s = first / 10 + (first < 600 ? 0 : 3600);
-  EXPECT_EQ(imported->tests[1].record.header.start_realtime_ns, kNewYear_ns + kSecond_ns * shown_s);
+  EXPECT_GT(first, 36'000);
+  EXPECT_TRUE(imported->tests[0].record.gaps.empty() ? imported->tests[1].record.gaps.front().estimated
+                                                     : imported->tests[0].record.gaps.front().estimated);
+  EXPECT_THAT(imported->report, HasSubstr("scans are missing where the time column jumps"));
+  // Within the resolution of the clock.
+  EXPECT_NEAR(static_cast<double>(*imported->tests[1].record.header.start_realtime_ns - kNewYear_ns),
+              1e8 * static_cast<double>(first), 1e9);
 }
 
 // Times of so few digits tell missing rows but no rate: scan indices run ahead of the rows.
@@ -431,6 +435,70 @@ TEST_F(TraceImport, UnitOfTheTimeIsItsHeadingsOrFoundByInspection) {
     ASSERT_TRUE(imported) << imported.error().message;
     EXPECT_NEAR(imported->tests[0].record.header.board.scan_rate_granted_Hz, 100.0, 0.01);
   }
+}
+
+TEST_F(TraceImport, UnitsInTheCellsOfTheTimeCount) {
+  const std::vector<double> three{1.0, 2.0, 3.0};
+  for (const char* const content :
+       {"Time,F\n990 ms,1\n995 ms,2\n1.000 s,3\n", "t (s),F\n0 ms,1\n5 ms,2\n10 ms,3\n",
+        "t,F\n0 msec,1\n5 msec,2\n10 msec,3\n"})
+    EXPECT_NEAR(expect_values(content, three).header.board.scan_rate_granted_Hz, 200.0, 1e-6);
+  expect_refused("t,F\n0 ms,1\n5,2\n10 ms,3\n",
+                 "trace.csv:3: column 't' is '5': a time has one of the units");
+  expect_refused("t,F\n0 cs,1\n5 cs,2\n10 cs,3\n", "trace.csv:2: column 't' is '0 cs'");
+}
+
+// Windows counts 100 ns since 1601. LabVIEW's seconds since 1904 look like those of a year to come.
+TEST_F(TraceImport, TimesOfOtherEpochsAreKnownOrTellNoStart) {
+  std::string windows = "Timestamp,F\n";
+  std::string labview = "Time,F\n";
+  std::string steps = "Time,F\n";
+  for (int i = 0; i < 2000; ++i) {
+    windows += fmt::format("1317215520{:08},1\n", 50000 * i);
+    labview += fmt::format("36105264{:02}.{:03},1\n", i / 200, 5 * (i % 200));
+    steps += fmt::format("{},1\n", i);
+  }
+  request_.now_ns = kNewYear_ns;
+  auto imported = import(windows);
+  ASSERT_TRUE(imported) << imported.error().message;
+  EXPECT_NEAR(imported->tests[0].record.header.board.scan_rate_granted_Hz, 200.0, 0.01);
+  EXPECT_NEAR(static_cast<double>(*imported->tests[0].record.header.start_realtime_ns), 1'527'681'600e9, 1e6);
+  imported = import(labview);
+  ASSERT_TRUE(imported) << imported.error().message;
+  EXPECT_FALSE(imported->tests[0].record.header.start_realtime_ns);
+  EXPECT_THAT(imported->report, HasSubstr("no start time"));
+  imported = import(steps);
+  ASSERT_TRUE(imported) << imported.error().message;
+  EXPECT_THAT(imported->report, HasSubstr("in ms, by inspection: 1000 Hz; --time-unit s would be 1 Hz"));
+}
+
+TEST_F(TraceImport, TimeOfTheWholeTestIsPreferredToThatOfItsCycles) {
+  const auto record =
+      expect_values("Total Time (s),Cycle Elapsed Time (s),F\n0.0,0.0,1\n0.1,0.1,2\n0.2,0.0,3\n0.3,0.1,4\n",
+                    {1.0, 2.0, 3.0, 4.0});
+  EXPECT_THAT(record.scan, ElementsAre(0, 1, 2, 3));
+}
+
+// Ten rows are lost; the counter tells, beside a clock of whole seconds too.
+TEST_F(TraceImport, CounterTellsMissingRows) {
+  request_.rate_Hz = 100.0;
+  for (const char* const name :
+       {"Sample #", "Scan No.", "Points", "Lfd. Nr.", "N°", "RECORD", "Zähler", "Point number", "#", "idx"}) {
+    for (const bool clock : {false, true}) {
+      std::string content = fmt::format("\"{}\",{}F\n", name, clock ? "Time," : "");
+      for (int i = 0; i < 500; ++i) {
+        if (i < 310 || i >= 320)
+          content += fmt::format("{},{}1\n", i, clock ? fmt::format("12:00:0{},", i / 100) : "");
+      }
+      const auto imported = import(content);
+      ASSERT_TRUE(imported) << imported.error().message;
+      EXPECT_THAT(imported->tests[0].record.gaps, SizeIs(1)) << name << clock;
+      EXPECT_EQ(test::in_memory(imported->tests[0]).scan.back(), 499);
+    }
+  }
+  // Something else by the same name.
+  expect_values("Points,F\n7,1\n7,2\n7,3\n", {1.0, 2.0, 3.0});
+  EXPECT_THAT(report_, HasSubstr("does not count the rows"));
 }
 
 TEST_F(TraceImport, WithoutTimesTheRateIsNeeded) {
