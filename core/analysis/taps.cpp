@@ -27,35 +27,41 @@ constexpr double kTapSigmas = 12.0;
 constexpr double kQuiet_s = 0.15;
 /// Readings a second beyond which neighbours are averaged: it leaves frequency and damping as they are.
 constexpr double kHighestRate_Hz = 4000.0;
-/// Fewest readings of a fit: as many for the residuals as parameters, and more.
+/// Fewest readings of a fit: as many for the residuals as parameters.
 constexpr std::size_t kFewestScans = 12;
 /// Most readings from the largest one on in which a fit may begin.
 constexpr std::size_t kMostScans = 1024;
-/// Standard errors of the variance of the residuals up to which they count as noise. One fit in six of noise
-/// alone exceeds it, and the next one begins later. A larger limit would let in what swings beside the cell.
+/// Standard errors of the variance of the residuals up to which they are noise, and no later beginning of the
+/// fit is tried: a larger limit would let in what swings beside the cell. Of fits that all leave more, the
+/// one that leaves least counts up to kMostErrors.
 constexpr double kNoiseErrors = 1.0;
+constexpr double kMostErrors = 3.0;
+/// Least amplitude where a fit begins, in standard deviations of the noise.
+constexpr double kLowestSigmas = 6.0;
 /// Fewest oscillations until the noise hides them: fewer may be the end of a push.
 constexpr double kFewestOscillations = 1.5;
+/// Eighths of a period by which the fit begins later than where its residuals are noise.
+constexpr std::size_t kLater = 4;
 /// Relative standard error of ω above which a tap tells no frequency.
 constexpr double kVague = 0.05;
 /// Of a first guess: steps of the frequency for each period that the readings span, and values of γ/2ω.
 constexpr double kGuessesPerPeriod = 4.0;
 constexpr double kDampings[] = {0.003, 0.01, 0.03, 0.1, 0.3};
 
-using Vector5d = Eigen::Matrix<double, 5, 1>;
-using Matrix5d = Eigen::Matrix<double, 5, 5>;
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-/// (level, of the cosine, of the sine, ω, γ/2); times in scans.
-using RingState = Vector5d;
+/// (level, its slope, of the cosine, of the sine, ω, γ/2); times in scans.
+using RingState = Vector6d;
 
 struct RingEquations {
-  Matrix5d normal = Matrix5d::Zero();
-  Vector5d gradient = Vector5d::Zero();
+  Matrix6d normal = Matrix6d::Zero();
+  Vector6d gradient = Vector6d::Zero();
   estimate::HuberSums sums;
   double cost = std::numeric_limits<double>::infinity();
 };
 
-/// level + e^(−γt/2) (a cos ωt + b sin ωt). For minimise().
+/// level + slope t + e^(−γt/2) (a cos ωt + b sin ωt). For minimise().
 struct RingProblem {
   using State = RingState;
   using Equations = RingEquations;
@@ -65,14 +71,14 @@ struct RingProblem {
 
   void assemble(const State& at, Equations& equations) const {
     equations = {};
-    if (!at.allFinite() || !(at[3] > 0.0) || !(at[3] < std::numbers::pi) || !(at[4] > 0.0)) return;
+    if (!at.allFinite() || !(at[4] > 0.0) || !(at[4] < std::numbers::pi) || !(at[5] > 0.0)) return;
     for (std::size_t k = 0; k < values.size(); ++k) {
       const auto t = static_cast<double>(k);
-      const std::complex<double> wave = std::exp(std::complex<double>{-at[4] * t, at[3] * t});
-      const double swing = at[1] * wave.real() + at[2] * wave.imag();
-      Vector5d by;
-      by << 1.0, wave.real(), wave.imag(), t * (at[2] * wave.real() - at[1] * wave.imag()), -t * swing;
-      const double z = (values[k] - at[0] - swing) / sigma;
+      const std::complex<double> wave = std::exp(std::complex<double>{-at[5] * t, at[4] * t});
+      const double swing = at[2] * wave.real() + at[3] * wave.imag();
+      Vector6d by;
+      by << 1.0, t, wave.real(), wave.imag(), t * (at[3] * wave.real() - at[2] * wave.imag()), -t * swing;
+      const double z = (values[k] - at[0] - at[1] * t - swing) / sigma;
       const double weight = equations.sums.add(z);
       equations.normal.noalias() += weight / (sigma * sigma) * by * by.transpose();
       equations.gradient += weight * z / sigma * by;
@@ -81,32 +87,35 @@ struct RingProblem {
   }
 
   [[nodiscard]] double step(const State& from, const Equations& equations, double damping, State& to) const {
-    Matrix5d normal = equations.normal;
+    Matrix6d normal = equations.normal;
     normal.diagonal() *= 1.0 + damping;
-    const Vector5d unit =
+    const Vector6d unit =
         normal.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();
-    const Matrix5d scaled = unit.asDiagonal() * normal * unit.asDiagonal();
-    const Vector5d step = unit.cwiseProduct(scaled.ldlt().solve(unit.cwiseProduct(equations.gradient)));
+    const Matrix6d scaled = unit.asDiagonal() * normal * unit.asDiagonal();
+    const Vector6d step = unit.cwiseProduct(scaled.ldlt().solve(unit.cwiseProduct(equations.gradient)));
     to = from + step;
     return 0.5 * step.dot(equations.gradient);
   }
 };
 
-/// Level and amplitudes of least squares for this ω and γ/2, and the sum of squares that they leave.
+/// Level, its slope and amplitudes of least squares for this ω and γ/2, and the sum of squares that they
+/// leave.
 std::pair<RingState, double> best_with(std::span<const double> values, double omega, double half_gamma) {
   const std::complex<double> turn = std::exp(std::complex<double>{-half_gamma, omega});
   std::complex<double> wave{1.0, 0.0};
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d right = Eigen::Vector4d::Zero();
   double squares = 0.0;
+  double t = 0.0;
   for (const double value : values) {
-    const Eigen::Vector3d by{1.0, wave.real(), wave.imag()};
+    const Eigen::Vector4d by{1.0, t, wave.real(), wave.imag()};
+    t += 1.0;
     normal.noalias() += by * by.transpose();
     right += value * by;
     squares += value * value;
     wave *= turn;
   }
-  const Eigen::Vector3d found = normal.ldlt().solve(right);
+  const Eigen::Vector4d found = normal.ldlt().solve(right);
   RingState state;
   state << found, omega, half_gamma;
   return {state, squares - found.dot(right)};
@@ -124,34 +133,41 @@ RingState first_guess(std::span<const double> values) {
   return best.first;
 }
 
+/// Noise of a reading, and how many readings tell it.
+struct Noise {
+  double sigma = 0.0;
+  double scans = 0.0;
+};
+
 struct RingFit {
   RingState state;
-  Matrix5d covariance;
+  Matrix6d covariance;
   double excess = 0.0;  ///< Of the variance of the residuals over that of noise, in its standard errors.
 
-  /// Whether it is an oscillation that leaves no more than noise.
-  [[nodiscard]] bool describes(double sigma) const {
-    const double seen =
-        std::log(std::hypot(state[1], state[2]) / sigma) / (2.0 * std::numbers::pi * state[4] / state[3]);
-    return excess <= kNoiseErrors && seen >= kFewestOscillations;
+  /// Whether it is an oscillation, and seen for long enough.
+  [[nodiscard]] bool swings(double sigma) const {
+    const double height = std::hypot(state[2], state[3]) / sigma;
+    const double seen = std::log(height) / (2.0 * std::numbers::pi * state[5] / state[4]);
+    return height >= kLowestSigmas && seen >= kFewestOscillations;
   }
 };
 
-std::optional<RingFit> fit_ring(std::span<const double> values, double sigma, const RingState& guess) {
+std::optional<RingFit> fit_ring(std::span<const double> values, const Noise& noise, const RingState& guess) {
   if (values.size() < kFewestScans) return std::nullopt;
-  const RingProblem problem{values, sigma};
-  RingFit fit{best_with(values, guess[3], guess[4]).first, {}, 0.0};
+  const RingProblem problem{values, noise.sigma};
+  RingFit fit{best_with(values, guess[4], guess[5]).first, {}, 0.0};
   RingEquations equations;
   problem.assemble(fit.state, equations);
   constexpr int kIterations = 60;
   constexpr double kSettled = 1e-6;
   if (!estimate::minimise(problem, fit.state, equations, {.iterations = kIterations, .absolute = kSettled}))
     return std::nullopt;
-  constexpr double kParameters = 5.0;
+  constexpr double kParameters = 6.0;
   fit.covariance = equations.sums.covariance_scale(kParameters) * equations.normal.inverse();
   if (!fit.covariance.allFinite() || !(fit.covariance.diagonal().minCoeff() > 0.0)) return std::nullopt;
   const double ratio = equations.sums.residual_sigma(kParameters) / estimate::kHuberResidualOfNoise;
-  fit.excess = (ratio * ratio - 1.0) * std::sqrt(0.5 * (equations.sums.count() - kParameters));
+  fit.excess =
+      (ratio * ratio - 1.0) / std::sqrt(2.0 / (equations.sums.count() - kParameters) + 2.0 / noise.scans);
   return fit;
 }
 
@@ -163,17 +179,32 @@ struct Knock {
   std::size_t end = 0;
 };
 
+/// Level of the readings outside taps, which may drift.
+class RunningLevel {
+ public:
+  /// \param memory  readings. The level begins as the median of the first so many.
+  RunningLevel(std::span<const double> values, std::size_t memory) : memory_(static_cast<double>(memory)) {
+    const std::span<const double> begin = values.first(std::min(memory, values.size()));
+    std::vector<double> sorted{begin.begin(), begin.end()};
+    value_ = signal::median(sorted);
+  }
+  [[nodiscard]] double value() const noexcept { return value_; }
+  void add(double reading) noexcept { value_ += (reading - value_) / memory_; }
+
+ private:
+  double memory_;
+  double value_ = 0.0;
+};
+
 /// \param quiet  readings below the threshold that end a tap.
 std::vector<Knock> knocks_in(std::span<const double> values, double threshold, std::size_t quiet) {
-  std::vector<double> first{values.begin(),
-                            values.begin() + static_cast<std::ptrdiff_t>(std::min(quiet, values.size()))};
-  double level = signal::median(first);  // Before the tap: it may drift.
+  RunningLevel level{values, quiet};
   std::vector<Knock> knocks;
   for (std::size_t k = 0; k < values.size(); ++k) {
-    const double off = std::abs(values[k] - level);
+    const double off = std::abs(values[k] - level.value());
     const bool is_quiet = knocks.empty() || k > knocks.back().last + quiet;
     if (!(off > threshold)) {
-      if (is_quiet) level += (values[k] - level) / static_cast<double>(quiet);
+      if (is_quiet) level.add(values[k]);
       continue;
     }
     if (is_quiet) {
@@ -182,7 +213,7 @@ std::vector<Knock> knocks_in(std::span<const double> values, double threshold, s
     }
     Knock& knock = knocks.back();
     knock.last = k;
-    if (off > std::abs(values[knock.peak] - level)) knock.peak = k;
+    if (off > std::abs(values[knock.peak] - level.value())) knock.peak = k;
   }
   for (Knock& knock : knocks) {
     knock.last = std::min(knock.last, knock.peak + kMostScans);
@@ -192,26 +223,44 @@ std::vector<Knock> knocks_in(std::span<const double> values, double threshold, s
   return knocks;
 }
 
-/// Noise of a reading outside the taps, at least the floor.
-/// \param share  of the blocks of readings that have less noise.
-double noise_outside(std::span<const double> values, const std::vector<Knock>& knocks, double share,
-                     double floor) {
+/// About the noise of a reading, whatever taps there are: that of the quieter quarter of its blocks.
+double rough_noise(std::span<const double> values) {
+  const double rounding = signal::smallest_step(values) / std::sqrt(12.0);
   signal::FourthDifferences differences;
   std::vector<double> medians;
+  for (const double value : values) {
+    if (differences.add(value))
+      medians.push_back(signal::block_median(differences.block(), medians.empty() ? 0.0 : medians.back()));
+  }
+  if (medians.empty()) return rounding;
+  const auto at = medians.begin() + static_cast<std::ptrdiff_t>(medians.size() / 4);
+  std::ranges::nth_element(medians, at);
+  return std::max(rounding, signal::sigma_of_median(*at));
+}
+
+/// The noise outside the taps, by the measure that tells the residuals of a fit, whatever its distribution
+/// and its spectrum are.
+Noise noise_outside(std::span<const double> values, const std::vector<Knock>& knocks, std::size_t quiet,
+                    double rough_sigma) {
+  std::vector<double> off;
+  signal::RunningVariance spread;
+  RunningLevel level{values, quiet};
   auto next = knocks.begin();
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (next != knocks.end() && k == next->first) {
-      differences.gap();
       k = next->end - 1;
       ++next;
-    } else if (differences.add(values[k])) {
-      medians.push_back(signal::block_median(differences.block(), medians.empty() ? 0.0 : medians.back()));
+      continue;
     }
+    off.push_back(values[k] - level.value());
+    spread.add(off.back());
+    level.add(values[k]);
   }
-  if (medians.empty()) return floor;
-  const auto at = medians.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(medians.size()));
-  std::ranges::nth_element(medians, at);
-  return std::max(floor, signal::sigma_of_median(*at));
+  const double sigma = std::max(std::sqrt(spread.variance()), rough_sigma);
+  estimate::HuberSums sums;
+  for (const double one : off) sums.add((one - spread.mean) / sigma);
+  const double measured = sigma * sums.residual_sigma(1.0) / estimate::kHuberResidualOfNoise;
+  return {std::max(measured, rough_sigma), std::max(static_cast<double>(off.size()), 1.0)};
 }
 
 /// Means of so many neighbours each.
@@ -225,8 +274,8 @@ std::vector<double> averaged(std::span<const double> values, std::size_t count) 
 }
 
 TesterEstimate ring_of(const RingFit& fit, double scan_rate_Hz) {
-  const double omega = fit.state[3] * scan_rate_Hz;
-  const double gamma = 2.0 * fit.state[4] * scan_rate_Hz;
+  const double omega = fit.state[4] * scan_rate_Hz;
+  const double gamma = 2.0 * fit.state[5] * scan_rate_Hz;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   const Eigen::Vector2d scale{scan_rate_Hz, 2.0 * scan_rate_Hz};
   covariance.topLeftCorner<2, 2>() =
@@ -243,27 +292,32 @@ Taps find_taps(std::span<const double> readings, double scan_rate_Hz) {
   const double rate_Hz = scan_rate_Hz / static_cast<double>(together);
   Taps found;
   if (values.size() < kFewestScans) return found;
-  // The first quarter of the blocks knows of no tap; then those outside them tell the noise.
-  const double rounding = signal::smallest_step(values) / std::sqrt(12.0);
   const auto quiet = static_cast<std::size_t>(std::ceil(kQuiet_s * rate_Hz));
-  const double roughly = noise_outside(values, {}, 0.25, rounding);
-  const std::vector<Knock> knocks = knocks_in(values, kTapSigmas * roughly, quiet);
-  const double sigma = std::max(roughly, noise_outside(values, knocks, 0.5, rounding));
+  const double rough_sigma = rough_noise(values);
+  const std::vector<Knock> knocks = knocks_in(values, kTapSigmas * rough_sigma, quiet);
+  const Noise noise = noise_outside(values, knocks, quiet, rough_sigma);
   for (const Knock& knock : knocks) {
     const double at_s = static_cast<double>(knock.peak) / rate_Hz;
     const auto from = [&](std::size_t first) { return values.subspan(first, knock.end - first); };
     const RingState guess = first_guess(from(knock.peak + (knock.last - knock.peak) / 2));
     // The contact may last beyond the peak: the fit begins later, until its residuals are noise.
-    const auto step = static_cast<std::size_t>(std::max(std::numbers::pi / 4.0 / guess[3], 1.0));
+    const auto step = static_cast<std::size_t>(std::max(std::numbers::pi / 4.0 / guess[4], 1.0));
     std::optional<RingFit> fit;
     for (std::size_t first = knock.peak; first <= knock.last; first += step) {
-      fit = fit_ring(from(first), sigma, guess);
-      if (fit && fit->describes(sigma)) break;
+      const std::optional<RingFit> one = fit_ring(from(first), noise, guess);
+      if (!one || !one->swings(noise.sigma)) continue;
+      if (!fit || one->excess < fit->excess) fit = one;
+      if (fit->excess > kNoiseErrors) continue;
+      // What is left of the contact is below the noise, and not yet nothing.
+      const std::optional<RingFit> later =
+          fit_ring(from(std::min(first + kLater * step, knock.last)), noise, guess);
+      if (later && later->swings(noise.sigma)) fit = later;
+      break;
     }
-    if (!fit || !fit->describes(sigma)) {
+    if (!fit || fit->excess > kMostErrors) {
       found.refused.push_back(
           {at_s, "what follows is not one decaying oscillation; tap once, with something hard"});
-    } else if (std::sqrt(fit->covariance(3, 3)) > kVague * fit->state[3]) {
+    } else if (std::sqrt(fit->covariance(4, 4)) > kVague * fit->state[4]) {
       found.refused.push_back(
           {at_s, "too little is seen of the oscillation; tap harder, or take more scans a second"});
     } else {

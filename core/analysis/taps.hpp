@@ -33,9 +33,9 @@ struct Taps {
 
 /// Finds the taps in equally spaced readings, and fits one decaying oscillation about a level to what follows
 /// each. The fit begins after the tap as soon as its residuals are noise. Taps less than 0.15 s apart are
-/// one. Of more than 4000 readings a second neighbours are averaged. \param readings  in any unit; finite;
-/// without gaps. \param scan_rate_Hz > 0. A cell above half of it seems to oscillate at another frequency
-/// below
+/// one. Of more than 4000 readings a second neighbours are averaged.
+/// \param readings  in any unit; finite; without gaps.
+/// \param scan_rate_Hz > 0. A cell above half of it seems to oscillate at another frequency below
 ///        (alias_Hz()).
 /// \return no tap if no reading is off the level, to either side, by more than twelve standard deviations of
 ///        the noise, or if there are fewer than twelve readings. The level follows a drift before the tap.

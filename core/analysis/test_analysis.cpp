@@ -398,8 +398,9 @@ TestResults TestAnalysis::finish() {
   if (check.voids()) {
     tester_.reset();
     tester_check_.reset();
-    no_bootstrap("the signal voids the results");
   }
+  // By the signal, or as the sled may never have stuck.
+  if (!results.delta_mu.value && !slips.empty()) no_bootstrap(results.delta_mu.reason);
   add_signal_findings(check, trace.size(), results);
   return results;
 }

@@ -89,7 +89,7 @@ TEST(Bootstrap, ScattersAsTheResultsAreOff) {
 
 TEST(Bootstrap, HasTheDriftInSAndKAsTheResults) {
   sim::Scene drifting = scene(false);
-  drifting.kinetic_drift = sim::KineticDrift{0.002};
+  drifting.kinetic_drift = sim::KineticDrift{.change = 0.01, .scale = 1.0};
   const Drawn drawn = analysed(drifting, 1, {.count = 200});
   ASSERT_EQ(drawn.bootstrap.reason, "");
   ASSERT_TRUE(drawn.results.drift_rate.value && *drawn.results.drift_rate.value > 0.001);
@@ -134,7 +134,7 @@ TEST(Bootstrap, LeavesTheResultsAsTheyAreAndSaysWhyThereIsNone) {
   const Drawn frozen = analysed(scene(true), 1, {.count = 100}, detect::EstimatorTier::kFit, {}, 60);
   EXPECT_FALSE(frozen.results.delta_mu.value);
   EXPECT_TRUE(frozen.bootstrap.spreads.empty());
-  EXPECT_NE(frozen.bootstrap.reason, "");
+  EXPECT_NE(frozen.bootstrap.reason.find("frozen"), std::string::npos) << frozen.bootstrap.reason;
 }
 
 }  // namespace
