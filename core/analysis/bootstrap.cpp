@@ -21,18 +21,18 @@
 namespace stickslip::analysis {
 namespace {
 
-constexpr std::size_t kFewestSlips = 8;
-constexpr double kFewestConverged = 0.9;
-constexpr std::size_t kMostTasks = 16;
-constexpr double kTail = 0.025;
+constexpr std::size_t kFewestToDraw = 8;
+constexpr double kLeastConverged = 0.9;
+constexpr std::size_t kMostDrawingTasks = 16;
+constexpr double kTailShare = 0.025;
 /// Change of the cost below which a fit has settled: all parameters together then move by 0.05 of a standard
 /// error, which adds 0.1 % to their scatter.
-constexpr double kSettled = 1e-3;
+constexpr double kDrawingSettled = 1e-3;
 
 /// What a drawing gives: S, K, S − K, ω, γ/2ω.
 using Drawn = std::array<double, 5>;
 constexpr std::size_t kWithDrift = 2;  // S and K.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kNames{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kDrawnNames{
     {{"mu_s", "1"}, {"mu_k", "1"}, {"delta_mu", "1"}, {"omega", "rad/s"}, {"gamma_over_2omega", "1"}}};
 
 Drawn results_of(double S, double K, const model::SharedParameters& shared) {
@@ -79,7 +79,7 @@ std::optional<Drawn> fit_each(const estimate::Trace& trace, const SlipEstimates&
   std::vector<estimate::SlipWindow> windows;
   for (const std::size_t slip : drawn) windows.push_back(slips[slip]);
   const estimate::SlipFit fit =
-      estimate::fit_slips(trace, windows, estimates.fit.shared, sigma, prior, kSettled);
+      estimate::fit_slips(trace, windows, estimates.fit.shared, sigma, prior, kDrawingSettled);
   if (!fit.converged) return std::nullopt;
   signal::RunningMean S;
   signal::RunningMean K;
@@ -122,7 +122,7 @@ BootstrapSpread spread_of(const std::pair<std::string_view, std::string_view>& n
   const auto at = [&](double share) {
     return values[static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)))];
   };
-  return {name.first, name.second, std::sqrt(variance.variance()), at(kTail), at(1.0 - kTail)};
+  return {name.first, name.second, std::sqrt(variance.variance()), at(kTailShare), at(1.0 - kTailShare)};
 }
 
 }  // namespace
@@ -138,8 +138,8 @@ Bootstrap bootstrap_slips(const estimate::Trace& trace, const SlipEstimates& est
   };
   if (!trace.belt.is_constant()) return none("the pull speed changes");
   const std::vector<estimate::SlipWindow> slips = slips_that_count(estimates);
-  if (slips.size() < kFewestSlips)
-    return none(fmt::format("{} slips that count in the means are needed, the test has {}", kFewestSlips,
+  if (slips.size() < kFewestToDraw)
+    return none(fmt::format("{} slips that count in the means are needed, the test has {}", kFewestToDraw,
                             slips.size()));
   const auto course = estimates.uniform ? model::UniformTrajectory::make(estimates.uniform->parameters)
                                         : std::optional<model::UniformTrajectory>{};
@@ -147,7 +147,8 @@ Bootstrap bootstrap_slips(const estimate::Trace& trace, const SlipEstimates& est
   for (const estimate::SlipWindow& slip : slips) drift.add(estimates.drift.at(slip.slip.onset_s));
   result.block = static_cast<std::size_t>(std::lround(std::cbrt(static_cast<double>(slips.size()))));
   // On each processor every so many of them: their order does not matter.
-  const std::size_t tasks = std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, kMostTasks);
+  const std::size_t tasks =
+      std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, kMostDrawingTasks);
   const auto fit_every = [&](const estimate::Trace& own, std::size_t first) {
     std::vector<Drawn> found;
     for (std::size_t i = first; i < settings.count; i += tasks) {
@@ -169,7 +170,7 @@ Bootstrap bootstrap_slips(const estimate::Trace& trace, const SlipEstimates& est
     };
     fits.push_back(std::async(fit_own));
   }
-  std::array<std::vector<double>, kNames.size()> values;
+  std::array<std::vector<double>, kDrawnNames.size()> values;
   for (std::future<std::vector<Drawn>>& fit : fits) {
     for (const Drawn& one : fit.get()) {
       for (std::size_t j = 0; j < one.size(); ++j)
@@ -177,10 +178,10 @@ Bootstrap bootstrap_slips(const estimate::Trace& trace, const SlipEstimates& est
     }
   }
   result.converged = values.front().size();
-  if (static_cast<double>(result.converged) < kFewestConverged * static_cast<double>(settings.count))
+  if (static_cast<double>(result.converged) < kLeastConverged * static_cast<double>(settings.count))
     return none(fmt::format("{} of {} fits converged", result.converged, settings.count));
   for (std::size_t j = 0; j < values.size(); ++j)
-    result.spreads.push_back(spread_of(kNames[j], std::move(values[j])));
+    result.spreads.push_back(spread_of(kDrawnNames[j], std::move(values[j])));
   return result;
 }
 

@@ -34,7 +34,9 @@ struct Slack {
 [[nodiscard]] Slack find_slack(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
                                double sigma);
 
-/// Text: why no fit of the model is made. \param slack_count > 0.
+/// Clause that says after how many slips the coupling hung slack, and that their troughs tell no K: the
+/// reason why no fit is made, and why K and S − K may be absent.
+/// \param slack_count  Slack::count, > 0. \param slip_count  all slips, the last included.
 [[nodiscard]] std::string why_slack(std::size_t slack_count, std::size_t slip_count);
 
 /// Sets to absent what the turning points of mostly slack slips do not tell: S − K, its scatter, and K; in a

@@ -158,16 +158,17 @@ std::optional<RingFit> fit_ring(std::span<const double> values, const Noise& noi
   RingFit fit{best_with(values, guess[4], guess[5]).first, {}, 0.0};
   RingEquations equations;
   problem.assemble(fit.state, equations);
-  constexpr int kIterations = 60;
-  constexpr double kSettled = 1e-6;
-  if (!estimate::minimise(problem, fit.state, equations, {.iterations = kIterations, .absolute = kSettled}))
+  constexpr int kRingIterations = 60;
+  constexpr double kRingSettled = 1e-6;
+  if (!estimate::minimise(problem, fit.state, equations,
+                          {.iterations = kRingIterations, .absolute = kRingSettled}))
     return std::nullopt;
-  constexpr double kParameters = 6.0;
-  fit.covariance = equations.sums.covariance_scale(kParameters) * equations.normal.inverse();
+  constexpr double kRingParameters = 6.0;
+  fit.covariance = equations.sums.covariance_scale(kRingParameters) * equations.normal.inverse();
   if (!fit.covariance.allFinite() || !(fit.covariance.diagonal().minCoeff() > 0.0)) return std::nullopt;
-  const double ratio = equations.sums.residual_sigma(kParameters) / estimate::kHuberResidualOfNoise;
+  const double ratio = equations.sums.residual_sigma(kRingParameters) / estimate::kHuberResidualOfNoise;
   fit.excess =
-      (ratio * ratio - 1.0) / std::sqrt(2.0 / (equations.sums.count() - kParameters) + 2.0 / noise.scans);
+      (ratio * ratio - 1.0) / std::sqrt(2.0 / (equations.sums.count() - kRingParameters) + 2.0 / noise.scans);
   return fit;
 }
 

@@ -128,6 +128,9 @@ int time_rank(const ColumnName& column) {
 }
 
 bool is_scan_counter(const ColumnName& column) {
+  // "I (A)" is a current.
+  constexpr std::array<std::string_view, 5> kNoUnits{"", "-", "1", "#", "RN"};  // RN: Campbell's.
+  if (!has(kNoUnits, column.unit)) return false;
   const std::string name = folded(column.name);
   if (has(kNumberWords, name)) return true;
   std::string_view word = name;

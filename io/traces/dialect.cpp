@@ -309,7 +309,7 @@ bool has_names(const Row& row, const Reading& reading) {
   return row.fields.size() >= dialect.columns.size() && is_text(row.fields.front()) &&
          time_rank(column_name(row.fields.front())) > 0 &&
          std::all_of(row.fields.begin() + 1, row.fields.end(), [](const std::string& field) {
-           return field.find_first_not_of("0123456789") == std::string::npos;
+           return field.size() <= 2 && field.find_first_not_of("0123456789") == std::string::npos;
          });
 }
 
@@ -329,10 +329,14 @@ std::size_t names_row(const Reading& reading, std::size_t lowest) {
   std::size_t best = lowest;
   for (std::size_t i = lowest; lowest - i < kMostRows && is_heading(rows[i], dialect); --i) {
     if (i < lowest && i > 0 && is_units_row(rows[i]) && is_heading(rows[i - 1], dialect)) return i - 1;
-    if (words(i) > words(best)) best = i;
-    // A time by its name is in the row of names alone.
-    if (i == 0 || count(i, [](const std::string& field) { return time_rank(column_name(field)) > 0; }) > 0)
-      break;
+    // Of two columns a row above may be a key and its value.
+    if (dialect.columns.size() > 2 && words(i) > words(best)) best = i;
+    // A time by its name, or a name with its unit, is in the row of names alone.
+    const auto is_name = [](const std::string& field) {
+      const ColumnName name = column_name(field);
+      return time_rank(name) > 0 || (!name.name.empty() && !name.unit.empty());
+    };
+    if (i == 0 || count(i, is_name) > 0) break;
   }
   return best;
 }
@@ -352,7 +356,7 @@ void find_heading(Reading& reading, const Head& head) {
   while (heading > 0 && is_rule(rows[heading])) --heading;
   std::size_t above = heading;
   while (above > 0 && is_early(rows[above], dialect)) --above;
-  // Rows with another decimal mark are early and no names as well.
+  // A row with the other decimal mark looks early, too: only the name of a time makes a row above a heading.
   if (std::any_of(rows[above].fields.begin(), rows[above].fields.end(),
                   [](const std::string& field) { return time_rank(column_name(field)) > 0; }))
     heading = above;
@@ -421,7 +425,9 @@ base::Result<void> refuse_other_mark(const Reading& reading, const std::string& 
   std::size_t count = 0;
   for (std::size_t i = 0; i < reading.first; ++i) {
     const Row& row = reading.rows[i];
-    if (row.fields.size() < other.columns.size() || is_scans(row, reading.dialect) || !is_scans(row, other))
+    // A heading below such rows shows that they are a preamble.
+    if (reading.dialect.header_line > row.line || row.fields.size() < other.columns.size() ||
+        is_scans(row, reading.dialect) || !is_scans(row, other))
       continue;
     if (count++ == 0) first = &row;
   }

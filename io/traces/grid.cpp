@@ -201,6 +201,8 @@ class Ticks {
 
   /// One index a row; a tick that is too long for the clock and the rate stands for missing rows.
   [[nodiscard]] Index indices(const std::filesystem::path& scratch_folder) const {
+    // What the clock makes up again is no gap.
+    if (lost() <= resolution_s_ * rate_Hz_ + 1.0) return counted(time_.size(), scratch_folder);
     Index index{scratch_folder};
     std::int64_t missing = 0;
     std::size_t k = 0;
@@ -213,6 +215,12 @@ class Ticks {
 
   /// Refuses a rate that is none of the clock's, with its resolution at both ends.
   [[nodiscard]] base::Result<void> check(const std::string& at) const {
+    constexpr double kMostScans = 1e12;
+    if (const double span_s = time_[time_.size() - 1] - time_[0]; !(span_s * rate_Hz_ < kMostScans))
+      return base::usage_error(
+          "{}: the time column spans {:.6g} s: correct it, or give --time-column none to go by the rate", at,
+          span_s);
+    if (std::abs(lost()) <= resolution_s_ * rate_Hz_ + 1.0) return {};
     double rows = 0.0;
     double span_s = 0.0;
     for (std::size_t k = 1; k < row_.size(); ++k) {
@@ -220,19 +228,31 @@ class Ticks {
       rows += static_cast<double>(row_[k] - row_[k - 1]);
       span_s += step(k);
     }
-    const bool is_slower = rows > (1.0 + kRateTolerance) * rate_Hz_ * (span_s + resolution_s_);
+    // Missing rows only lower their number: all of them tell whether the rate is too low.
+    const auto all = static_cast<double>(row_.back() - row_.front());
+    const double whole_s = time_[row_.back()] - time_[row_.front()];
+    const bool is_slower = all > (1.0 + kRateTolerance) * rate_Hz_ * (whole_s + resolution_s_);
     const bool is_faster = rows < (1.0 - kRateTolerance) * rate_Hz_ * (span_s - resolution_s_);
     if (!is_slower && !is_faster) return {};
     return base::usage_error(
-        "{}: the time column shows {} rows in {:.6g} s, --rate says {:.6g} Hz: give --rate \"{:.4g} Hz\" to "
-        "go by the column, or --time-column none to go by the rate",
-        at, rows, span_s, rate_Hz_, rows / span_s);
+        "{}: the time column shows {} rows in {:.6g} s, --rate says {:.6g} Hz: give --time-column none to go "
+        "by the rate, or --rate \"{:.6g} Hz\" to go by the column if its unit is right",
+        at, is_slower ? all : rows, is_slower ? whole_s : span_s, rate_Hz_,
+        is_slower ? all / whole_s : rows / span_s);
   }
 
  private:
   [[nodiscard]] double step(std::size_t k) const { return time_[row_[k]] - time_[row_[k] - 1]; }
+  /// Rows that the whole clock shows and that are not there; to its resolution.
+  [[nodiscard]] double lost() const {
+    return (time_[time_.size() - 1] - time_[0]) * rate_Hz_ - static_cast<double>(time_.steps());
+  }
+  /// A step that the rows with one time before and behind it do not account for.
   [[nodiscard]] bool is_gap(std::size_t k) const {
-    return step(k) > kLongestStep * resolution_s_ + 1.0 / rate_Hz_;
+    const std::size_t next = k + 1 < row_.size() ? row_[k + 1] : time_.size();
+    const std::size_t rows = std::max(row_[k] - (k > 0 ? row_[k - 1] : 0), next - row_[k]);
+    return step(k) > kLongestStep * resolution_s_ + 1.0 / rate_Hz_ &&
+           step(k) * rate_Hz_ > kLongestStep * static_cast<double>(rows) + 1.0;
   }
   [[nodiscard]] std::int64_t missing_at(std::size_t k) const {
     if (!is_gap(k)) return 0;
@@ -275,11 +295,12 @@ std::vector<std::size_t> runs_in(const RowView& time_s) {
 }
 
 bool is_count(const RowView& column) {
+  if (column.size() < 2) return false;
   const Times count{column};
-  const double middle = count.size() < 2 ? 0.0 : count.median_step();
+  const double middle = count.median_step();
   std::size_t same = 0;
   for (std::size_t i = 0; i < count.steps(); ++i) same += count.step(i) == middle ? 1U : 0U;
-  return middle != 0.0 && middle == std::floor(middle) && 2 * same > count.steps();
+  return std::abs(middle) == 1.0 && 2 * same > count.steps();
 }
 
 base::LongColumn<double> continued(base::LongColumn<double> column, double first, bool counts,

@@ -189,7 +189,8 @@ class Importer {
         quantity_ == RawQuantity::kCounts ? static_cast<double>(request_.counts->lowest) : 0.0;
     value_ = RowView{table_.value, offset, scale_, request_.reverse};
     const std::vector<std::size_t> runs = time_s_.empty() ? std::vector<std::size_t>{0} : runs_in(time_s_);
-    if (runs.size() > 1)
+    several_runs_ = runs.size() > 1;
+    if (several_runs_)
       note("{} runs: the clock starts again in {} {}", runs.size(), row_word(), line(runs[1]));
     for (std::size_t i = 0; i < runs.size(); ++i) {
       const std::size_t end = i + 1 < runs.size() ? runs[i + 1] : row_count_;
@@ -392,7 +393,9 @@ class Importer {
   bool count_scans(Grid& grid, std::size_t begin, std::size_t count) {
     const auto column = counter_column_of(dialect_, columns_.value);
     if (!column || column == columns_.time) return false;
+    if (counter_.empty() && counter_was_read_) return false;
     if (counter_.empty()) {
+      counter_was_read_ = true;
       auto table = read_table(source_, dialect_, columns_.value, column, request_.scratch_folder);
       if (!table || table->time.size() != row_count_) return false;
       counter_ = continued(std::move(table->time), table->first_time, true, request_.scratch_folder);
@@ -403,7 +406,8 @@ class Importer {
     options.rate_Hz = 1.0;
     options.scratch_folder = request_.scratch_folder;
     auto counted = grid_of(rows, options, [](std::size_t) { return std::string{}; });
-    if (!counted) return false;
+    // A number of the row counts what is there; the clock may have seen more.
+    if (!counted || std::as_const(counted->index).back() < std::as_const(grid.index).back()) return false;
     grid.index = std::move(counted->index);
     note("column \"{}\" counts the scans", base::one_line(dialect_.columns[*column].text, 40));
     return true;
@@ -449,10 +453,10 @@ class Importer {
     const base::LongColumn<double>& raw = run->raw;
     const auto coefficient = [&](std::size_t i) { return calibration.coefficient(raw[i]); };
     const double level = sliding_level(raw.size(), coefficient);
-    if (std::abs(level) < pipeline::SegmenterSettings{}.end_coefficient) {
-      // The sign of an unloaded cell is that of its zero and its noise.
-      note("the run of {} {} has no load, {:.2g} as a coefficient: its sign is not checked", row_word(),
-           line(first_row), level);
+    if (several_runs_ && std::abs(level) < pipeline::SegmenterSettings{}.end_coefficient) {
+      // The sign of an unloaded cell is that of its zero and its noise; another run tells that of the trace.
+      note("the run of {} {} has hardly any load, {:.2g} as a coefficient: its sign is not checked",
+           row_word(), line(first_row), level);
     } else if (level < 0.0) {
       return base::usage_error("{}: the force is negative while sliding, {:.4g} as a coefficient: {}",
                                request_.path, level,
@@ -498,6 +502,8 @@ class Importer {
   Dialect dialect_;
   Columns columns_;
   TraceTable table_;
+  bool counter_was_read_ = false;
+  bool several_runs_ = false;
   base::LongColumn<double> counter_;  ///< Of the scans, beside a coarse clock; else empty.
   std::size_t row_count_ = 0;
   RowView value_;   ///< In board.quantity.

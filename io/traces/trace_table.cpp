@@ -224,7 +224,7 @@ class TableReader {
                         : fmt::format("column '{}'", base::one_line(text, kLongestShown));
   }
 
-  enum class Again { kNo, kHeading, kUnits };
+  enum class Again { kNo, kHeading, kOnlyUnits };
 
   /// Whether this is the heading again, or the row of units.
   [[nodiscard]] Again heading_again(const std::vector<std::string_view>& fields) const {
@@ -240,7 +240,7 @@ class TableReader {
       units = units &&
               (text.empty() || (is_unit(text) && column_name("", text).unit == dialect_.columns[c].unit));
     }
-    return same ? Again::kHeading : units ? Again::kUnits : Again::kNo;
+    return same ? Again::kHeading : units ? Again::kOnlyUnits : Again::kNo;
   }
 
   /// What differs in a row of words that is another heading, as it has a name of the first one or units
@@ -369,19 +369,13 @@ class TableReader {
     const Cell value = cell(value_column_, value_text);
     std::optional<TimeCell> time;
     std::string_view time_text;
+    Cell number;
     bool no_time = false;
     bool time_is_hole = false;
     if (time_column_) {
       time_text = trimmed(dialect_.content(*time_column_, field(fields, *time_column_)));
-      const Cell number = cell(*time_column_, time_text);
+      number = cell(*time_column_, time_text);
       time = read_time_cell(time_text, number, dialect_.decimal);
-      if (time && number.kind == CellKind::kNumber && !to_seconds(*time, number.unit)) {
-        return base::usage_error(
-            "{}:{}: {} is '{}': a time has one of the units s, ms, us, ns, min and h, in all rows or in "
-            "none; "
-            "correct the line",
-            path_, line, column_shown(*time_column_), base::one_line(time_text, kLongestShown));
-      }
       no_time = !time;
       time_is_hole = no_time && number.kind != CellKind::kText;
     }
@@ -409,6 +403,12 @@ class TableReader {
           "it{}",
           path_, strange_line_, strange_what_, line,
           words_alone_ ? " and those below it if they are no scans" : "");
+    }
+    if (time && number.kind == CellKind::kNumber && !to_seconds(*time, number.unit)) {
+      return base::usage_error(
+          "{}:{}: {} is '{}': a time has one of the units s, ms, us, ns, min and h, in all rows or in none; "
+          "correct the line",
+          path_, line, column_shown(*time_column_), base::one_line(time_text, kLongestShown));
     }
     if (no_time) {
       return base::usage_error(

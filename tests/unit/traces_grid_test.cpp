@@ -158,10 +158,44 @@ TEST(TraceGrid, CoarseClockRefusesAnotherRate) {
   options.digit_s = 1.0;
   for (const double rate_Hz : {100.0, 2000.0}) {
     options.rate_Hz = rate_Hz;
-    EXPECT_THAT(refusal(time, options), HasSubstr("give --rate \"200 Hz\""));
+    EXPECT_THAT(refusal(time, options), HasSubstr("--rate \"200 Hz\" to go by the column"));
   }
   options.rate_Hz = 190.0;  // 6 s ± 1 s.
   EXPECT_TRUE(grid(time, options));
+}
+
+// Three significant digits: 0.01 s below 10 s, 0.1 s from there on. Nothing is missing.
+TEST(TraceGrid, CoarseClockWhoseResolutionChangesShowsNoGaps) {
+  auto time = times(2000, 100.0, 0.0);
+  for (double& t : time) {
+    if (t >= 10.0) t = std::floor(t * 10.0 + 1e-9) / 10.0;
+  }
+  GridOptions options;
+  options.digit_s = 0.01;
+  options.rate_Hz = 100.0;
+  const auto found = grid(time, options);
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_EQ(found->index.back(), 1999);
+}
+
+// Rows arrive in bursts of 8 ms, now and then late; the clock makes it up.
+TEST(TraceGrid, CoarseClockThatStallsShowsNoGaps) {
+  std::vector<double> time;
+  for (int i = 0; i < 4000; ++i) {
+    const int burst = i / 8;
+    time.push_back(0.008 * (burst % 100 >= 90 ? burst / 100 * 100 + 100 : burst));
+  }
+  GridOptions options;
+  options.digit_s = 0.001;
+  options.rate_Hz = 1000.0;
+  const auto found = grid(time, options);
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_EQ(found->index.back(), 3999);
+}
+
+TEST(TraceGrid, NoRowsAreNoCount) {
+  const base::LongColumn<double> none;
+  EXPECT_FALSE(is_count(RowView{none, 0.0, 1.0, false}));
 }
 
 TEST(TraceGrid, CountersContinueWhereTheyStartAgain) {

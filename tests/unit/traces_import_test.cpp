@@ -343,6 +343,24 @@ TEST_F(TraceImport, NegativeForceNeedsInvert) {
   EXPECT_TRUE(imported) << imported.error().message;
 }
 
+// Names that count scans elsewhere.
+TEST_F(TraceImport, CurrentIsNoCounter) {
+  request_.rate_Hz = 100.0;
+  std::string content = "I (A),F\n";
+  for (int i = 0; i < 100; ++i) content += fmt::format("{},{}\n", i == 50 ? std::string{} : "0.501", 0.3);
+  const auto imported = import(content);
+  ASSERT_TRUE(imported) << imported.error().message;
+  EXPECT_EQ(imported->tests.front().scans.size(), 100U);
+}
+
+TEST_F(TraceImport, PreambleWithAnotherMarkAboveAHeadingIsNone) {
+  std::string content = "Mass;0.200\nSpeed;2.5\nStiffness;0.9\nTime;F\n";
+  for (int i = 0; i < 100; ++i) content += fmt::format("12:00:{:02},{:03};1,2345\n", i / 10, i % 10 * 100);
+  const auto imported = import(content);
+  ASSERT_TRUE(imported) << imported.error().message;
+  EXPECT_THAT(imported->report, HasSubstr("heading in line 4"));
+}
+
 // A test, then a start without load that was given up, or the other way round.
 TEST_F(TraceImport, RunWithoutLoadTellsNoSign) {
   std::string test;
@@ -355,8 +373,9 @@ TEST_F(TraceImport, RunWithoutLoadTellsNoSign) {
     const auto imported = import("t (s),F\n" + content);
     ASSERT_TRUE(imported) << imported.error().message;
     EXPECT_EQ(imported->tests.size(), 2U);
-    EXPECT_THAT(imported->report,
-                HasSubstr(fmt::format("the run of line {} has no load, -0.004 as a coefficient", line)));
+    EXPECT_THAT(
+        imported->report,
+        HasSubstr(fmt::format("the run of line {} has hardly any load, -0.004 as a coefficient", line)));
   }
 }
 
