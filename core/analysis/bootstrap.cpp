@@ -77,6 +77,7 @@ std::optional<Drawn> fit_each(const estimate::Trace& trace, const SlipEstimates&
                               const std::vector<std::size_t>& drawn, double sigma,
                               const estimate::SharedPrior& prior) {
   std::vector<estimate::SlipWindow> windows;
+  windows.reserve(drawn.size());
   for (const std::size_t slip : drawn) windows.push_back(slips[slip]);
   const estimate::SlipFit fit =
       estimate::fit_slips(trace, windows, estimates.fit.shared, sigma, prior, kDrawingSettled);
