@@ -302,14 +302,15 @@ Taps find_taps(std::span<const double> readings, double scan_rate_Hz) {
     const auto from = [&](std::size_t first) { return values.subspan(first, knock.end - first); };
     const RingState guess = first_guess(from(knock.peak + (knock.last - knock.peak) / 2));
     // The contact may last beyond the peak: the fit begins later, until its residuals are noise.
-    const auto step = static_cast<std::size_t>(std::max(std::numbers::pi / 4.0 / guess[4], 1.0));
+    const double eighth = guess[4] > 0.0 ? std::numbers::pi / 4.0 / guess[4] : 1.0;
+    const auto step = static_cast<std::size_t>(std::max(eighth, 1.0));
     std::optional<RingFit> fit;
     for (std::size_t first = knock.peak; first <= knock.last; first += step) {
       const std::optional<RingFit> one = fit_ring(from(first), noise, guess);
       if (!one || !one->swings(noise.sigma)) continue;
       if (!fit || one->excess < fit->excess) fit = one;
       if (fit->excess > kNoiseErrors) continue;
-      // What is left of the contact is below the noise, and not yet nothing.
+      // What is left of the contact is below the noise now, and still shifts the fit.
       const std::optional<RingFit> later =
           fit_ring(from(std::min(first + kLater * step, knock.last)), noise, guess);
       if (later && later->swings(noise.sigma)) fit = later;

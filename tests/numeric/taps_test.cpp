@@ -114,6 +114,9 @@ TEST(Taps, AreFoundAtTheirTimesAndNowhereInNoise) {
   EXPECT_TRUE(find_taps(std::span{read}.first(before), bench.rate_Hz).taps.empty());
   EXPECT_TRUE(find_taps(std::vector<double>(1000, 0.25), bench.rate_Hz).taps.empty());
   EXPECT_TRUE(find_taps({}, bench.rate_Hz).taps.empty());
+  std::vector<double> at_the_end{read.begin(), read.begin() + static_cast<std::ptrdiff_t>(before)};
+  at_the_end.back() = 1.0;
+  EXPECT_EQ(find_taps(at_the_end, bench.rate_Hz).refused.size(), 1U);
 }
 
 TEST(Taps, OfACellAboveHalfTheScanRateShowItsAlias) {
