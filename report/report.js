@@ -239,7 +239,7 @@
         viewer.shown = i;
         choice.selectedIndex = i;
         const test = material.tests[i];
-        const trace = test.trace;
+        const trace = JSON.parse(document.getElementById(`trace-${m}-${i}`).textContent);
         trace.key = `${m}`;
         facts.textContent = [test.title, test.regime, `rung: ${test.rung}${test.details.rung ? `, ${test.details.rung.reason}` : ""}`, plural(trace.scan_count, "scan") + ` at ${Number(trace.rate.toPrecision(6))} Hz`,
           test.pull_speed_text, trace.thinned ? "lowest and highest scan of each part shown" : ""].filter(Boolean).join(" · ");

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <initializer_list>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
@@ -35,20 +37,36 @@ Json quantities_json() {
 /// \param report  report_json() of the material.
 Json material_json(const Material& material, Json report) {
   report["label"] = material.label;
-  for (std::size_t i = 0; i < material.tests.size(); ++i)
-    report["tests"][i]["trace"] = Json::parse(material.tests[i].trace);
   return report;
 }
 
+/// An element for each test: a browser parses only the traces that are looked at.
+std::string trace_elements(std::initializer_list<const Material*> materials) {
+  std::string html;
+  std::size_t m = 0;
+  for (const Material* const material : materials) {
+    std::size_t i = 0;
+    for (const ReportedTest& test : material->tests)
+      fmt::format_to(std::back_inserter(html),
+                     "<script type=\"application/json\" id=\"trace-{}-{}\">{}</script>\n", m, i++,
+                     test.trace);
+    ++m;
+  }
+  return html;
+}
+
 /// Replaces each mark in the template once, in order.
-std::string page_of(const Json& data, const ChartLibrary& charts) {
+std::string page_of(const Json& data, std::initializer_list<const Material*> materials,
+                    const ChartLibrary& charts) {
   const std::string text = json_for_script(data);
-  const std::array<std::pair<std::string_view, std::string_view>, 9> parts{{
+  const std::string traces = trace_elements(materials);
+  const std::array<std::pair<std::string_view, std::string_view>, 10> parts{{
       {"@LICENSE@", charts.license},
       {"@UPLOT_CSS@", charts.style},
       {"@COLOURS_CSS@", colours_css()},
       {"@REPORT_CSS@", report_css()},
       {"@DATA@", text},
+      {"@TRACES@", traces},
       {"@UPLOT_JS@", charts.script},
       {"@UNCERTAIN_JS@", uncertain_js()},
       {"@CHARTS_JS@", charts_js()},
@@ -89,19 +107,20 @@ Json page_json(Json materials, Json comparison) {
 }  // namespace
 
 std::string json_for_script(const Json& json) {
+  const std::string whole = io::json_text(json);
   std::string text;
-  for (const char c : io::json_text(json)) {
-    if (c == '<') {
-      text += "\\u003c";  // Only inside strings, where this means the same.
-    } else {
-      text += c;
-    }
+  for (std::string_view rest = whole;;) {
+    const std::size_t at = rest.find('<');
+    text += rest.substr(0, at);
+    if (at == rest.npos) return text;
+    text += "\\u003c";  // Only inside strings, where this means the same.
+    rest.remove_prefix(at + 1);
   }
-  return text;
 }
 
 std::string report_page(const Material& material, const ChartLibrary& charts) {
-  return page_of(page_json(Json::array({material_json(material, report_json(material))}), nullptr), charts);
+  return page_of(page_json(Json::array({material_json(material, report_json(material))}), nullptr),
+                 {&material}, charts);
 }
 
 std::string comparison_page(const Material& a, const Material& b, const MaterialComparison& comparison,
@@ -111,7 +130,7 @@ std::string comparison_page(const Material& a, const Material& b, const Material
       Json::array({material_json(a, std::move(whole["a"])), material_json(b, std::move(whole["b"]))});
   whole.erase("a");
   whole.erase("b");
-  return page_of(page_json(std::move(materials), std::move(whole)), charts);
+  return page_of(page_json(std::move(materials), std::move(whole)), {&a, &b}, charts);
 }
 
 }  // namespace stickslip::report

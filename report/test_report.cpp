@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "report/budget_forms.hpp"
+#include "report/report_page.hpp"
 #include "report/trace_json.hpp"
 #include <nlohmann/json.hpp>
 
@@ -89,7 +90,7 @@ base::Result<Material> read_material(std::string label, std::span<const std::str
         return tl::unexpected(
             base::Error{trace.error().kind, fmt::format("{}: {}", file, trace.error().message)});
       }
-      test.trace = trace->dump();
+      test.trace = json_for_script(*trace);
     }
     test.truth = std::move(record->end->truth);
     const analysis::SkippedCorrections skipped =

@@ -401,6 +401,12 @@ std::optional<Reading> read_as(const Head& head, char separator, char decimal, s
   reading.rows = rows_of(head, separator, skip);
   if (!find_columns(reading) || !find_first_row(reading)) return std::nullopt;
   find_heading(reading, head);
+  for (std::size_t i = 0; i < reading.first && reading.dialect.header_line > 0; ++i) {
+    if (reading.rows[i].line <= reading.dialect.header_line || is_scans(reading.rows[i], reading.dialect))
+      continue;
+    auto& fields = reading.dialect.rows_below_heading.emplace_back();
+    for (const std::string& field : reading.rows[i].fields) fields.emplace_back(trimmed(field));
+  }
   return reading;
 }
 

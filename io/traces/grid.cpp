@@ -303,9 +303,9 @@ bool is_count(const RowView& column) {
   return std::abs(middle) == 1.0 && 2 * same > count.steps();
 }
 
-base::LongColumn<double> continued(base::LongColumn<double> column, double first, bool counts,
-                                   const std::filesystem::path& scratch_folder) {
-  if (column.size() < 2) return column;
+Continued continued(base::LongColumn<double> column, double first, bool counts,
+                    const std::filesystem::path& scratch_folder) {
+  if (column.size() < 2) return {std::move(column)};
   const Times rows{RowView{column, -first, 1.0, false}};
   double highest = rows[0];
   bool falls = false;
@@ -313,24 +313,23 @@ base::LongColumn<double> continued(base::LongColumn<double> column, double first
     highest = std::max(highest, rows[i]);
     falls = falls || rows[i] < rows[i - 1];
   }
-  if (!falls) return column;
+  if (!falls) return {std::move(column)};
   const double step = rows.median_step();
   for (const double wrap : {0x1p8, 0x1p16, 0x1p24, 0x1p32}) {
     // It has come to within a step of the end, or 0.1 % where rows are missing there.
     if (highest >= wrap || highest < wrap - std::max(step, 1e-3 * wrap) || !(step > 0.0)) continue;
-    if (wrap == 0x1p8 && !counts) return column;
-    base::LongColumn<double> whole{scratch_folder};
-    double added = 0.0;
+    if (wrap == 0x1p8 && !counts) break;
+    Continued whole{base::LongColumn<double>{scratch_folder}, wrap, 0};
     double before = rows[0];
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const double now = rows[i];
-      if (now < before && now + wrap - before < 0.25 * wrap) added += wrap;
+      whole.starts += now < before && now + wrap - before < 0.25 * wrap;
       before = now;
-      whole.push_back(now - first + added);
+      whole.column.push_back(now - first + static_cast<double>(whole.starts) * wrap);
     }
     return whole;
   }
-  return column;
+  return {std::move(column)};
 }
 
 base::Result<Grid> grid_of(const RowView& all_times, const GridOptions& options, const Place& place) {

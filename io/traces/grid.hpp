@@ -55,10 +55,17 @@ using Place = std::function<std::string(std::size_t row)>;
 /// Whether most rows rise or fall by the same whole number, as in a column that counts scans.
 [[nodiscard]] bool is_count(const RowView& column);
 
+/// A column of numbers that only rise.
+struct Continued {
+  base::LongColumn<double> column;
+  double end = 0.0;        ///< Where it starts again: 2^8, 2^16, 2^24 or 2^32; 0: nowhere.
+  std::size_t starts = 0;  ///< How often it starts again.
+};
+
 /// The column, continued where its whole numbers start again at 2^16, 2^24 or 2^32, as counters do.
 /// \param first  what was subtracted from the column. \param counts  2^8 is looked for too.
-[[nodiscard]] base::LongColumn<double> continued(base::LongColumn<double> column, double first, bool counts,
-                                                 const std::filesystem::path& scratch_folder);
+[[nodiscard]] Continued continued(base::LongColumn<double> column, double first, bool counts,
+                                  const std::filesystem::path& scratch_folder);
 
 /// \param time_s  of the rows of one run, finite, at least two.
 /// Errors, kUsage, each with its remedy: times that do not advance, run backwards, are doubled, are too

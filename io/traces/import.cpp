@@ -161,9 +161,8 @@ class Importer {
     if (!table) return tl::unexpected(table.error());
     table_ = std::move(*table);
     row_count_ = table_.value.size();
-    if (table_.time_decimals <= 0 && !table_.time_in_seconds)
-      table_.time = continued(std::move(table_.time), table_.first_time, columns_.counts_scans,
-                              request_.scratch_folder);
+    if (columns_.time && table_.time_decimals <= 0 && !table_.time_in_seconds)
+      table_.time = continue_counter(std::move(table_.time), table_.first_time, *columns_.time);
     if (columns_.counts_scans && !is_count(RowView{table_.time, 0.0, 1.0, false})) {
       note("column \"{}\" is not read: it does not count the rows",
            base::one_line(dialect_.columns[*columns_.time].text, 40));
@@ -388,6 +387,22 @@ class Importer {
     });
   }
 
+  /// By continued(): runs of as many rows cannot be told from a counter that starts again.
+  base::LongColumn<double> continue_counter(base::LongColumn<double> values, double first,
+                                            std::size_t column) {
+    const bool counts = column != columns_.time || columns_.counts_scans;
+    Continued whole = continued(std::move(values), first, counts, request_.scratch_folder);
+    if (whole.starts > 0) {
+      note(
+          "column \"{}\" starts again after {:.0f}, {} time{}, as a counter of {:.0f} bits does: the rows go "
+          "on as one "
+          "run. If each start is that of a run, put each into a file of its own",
+          base::one_line(dialect_.columns[column].text, 40), whole.end - 1.0, whole.starts,
+          whole.starts == 1 ? "" : "s", std::log2(whole.end));
+    }
+    return std::move(whole.column);
+  }
+
   /// Indices of a column that counts the scans, which a coarse clock does not tell. \return false if there
   /// is none: then grid stays.
   bool count_scans(Grid& grid, std::size_t begin, std::size_t count) {
@@ -398,7 +413,7 @@ class Importer {
       counter_was_read_ = true;
       auto table = read_table(source_, dialect_, columns_.value, column, request_.scratch_folder);
       if (!table || table->time.size() != row_count_) return false;
-      counter_ = continued(std::move(table->time), table->first_time, true, request_.scratch_folder);
+      counter_ = continue_counter(std::move(table->time), table->first_time, *column);
     }
     const RowView rows = RowView{counter_, 0.0, 1.0, request_.reverse}.part(begin, count);
     if (!is_count(rows)) return false;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "io/traces/quantity_unit.hpp"
+
 #include "core/base/quantity.hpp"
 #include "core/base/wording.hpp"
 
@@ -46,6 +48,13 @@ std::string plain_time_unit(const std::string& as_printed) {
   if (unit == "usec" || unit.starts_with("microsec")) return "us";
   if (unit == "hr" || unit == "hrs" || unit.starts_with("hour") || unit.starts_with("stunde")) return "h";
   return unit.starts_with("min") ? "min" : as_printed;
+}
+
+bool mean_the_same(const std::string& one, const std::string& other) {
+  if (plain_time_unit(one) == plain_time_unit(other)) return true;
+  const Result<QuantityUnit> first = quantity_unit(one);
+  const Result<QuantityUnit> second = quantity_unit(other);
+  return first && second && first->quantity == second->quantity && first->scale == second->scale;
 }
 
 Result<TimeUnit> time_unit_of(const ImportRequest& request, const ColumnName& column,

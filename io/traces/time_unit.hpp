@@ -23,6 +23,8 @@ struct TimeUnit {
 /// As base::parse_quantity() takes it: "ms" for "msec", "s" for "Sek." …
 [[nodiscard]] std::string plain_time_unit(const std::string& unit);
 
+/// Whether two units of a heading are one: "s" and "sec", "N" and "Newton".
+[[nodiscard]] bool mean_the_same(const std::string& one, const std::string& other);
 /// The unit that the request or the heading states; else the one in which rate and length are those of a
 /// friction test. Errors: kUsage if the unit is no time, or if several units are possible.
 [[nodiscard]] base::Result<TimeUnit> time_unit_of(const ImportRequest& request, const ColumnName& column,

@@ -232,15 +232,38 @@ class TableReader {
     bool same = true;
     bool units = dialect_.units_line > 0;
     for (std::size_t c = 0; c < dialect_.columns.size() && (same || units); ++c) {
-      const std::string_view text = field(fields, c);
+      const std::string_view text = trimmed(field(fields, c));
       // Nearly every row is told by the first byte.
-      const std::string& heading = dialect_.columns[c].text;
-      same = same && trimmed(text).substr(0, 1) == std::string_view{heading}.substr(0, 1) &&
-             column_name(text).text == heading;
-      units = units &&
-              (text.empty() || (is_unit(text) && column_name("", text).unit == dialect_.columns[c].unit));
+      same = same && folds_alike(text, dialect_.columns[c].text) && is_same(column_name(text), c);
+      units = units && (text.empty() || (is_unit(text) && mean_the_same(column_name("", text).unit,
+                                                                        dialect_.columns[c].unit)));
     }
-    return same ? Again::kHeading : units ? Again::kOnlyUnits : Again::kNo;
+    if (same) return Again::kHeading;
+    const auto is_it = [&fields](const std::vector<std::string>& row) {
+      return std::equal(row.begin(), row.end(), fields.begin(), fields.end(),
+                        [](const std::string& one, std::string_view other) { return one == trimmed(other); });
+    };
+    const bool again =
+        units || std::any_of(dialect_.rows_below_heading.begin(), dialect_.rows_below_heading.end(), is_it);
+    return again ? Again::kOnlyUnits : Again::kNo;
+  }
+
+  /// False only of texts that differ when folded, by their first byte.
+  static bool folds_alike(std::string_view one, std::string_view other) {
+    if (one.empty() || other.empty()) return one.empty() == other.empty();
+    const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c; };
+    const auto is_ascii = [](char c) { return static_cast<unsigned char>(c) < 0x80U; };
+    return lower(one.front()) == lower(other.front()) || !is_ascii(one.front()) || !is_ascii(other.front());
+  }
+
+  /// Whether a heading names this column, with the unit that the first heading has in this row, or that the
+  /// column has.
+  [[nodiscard]] bool is_same(const ColumnName& name, std::size_t column) const {
+    if (column >= dialect_.columns.size()) return false;
+    const ColumnName& own = dialect_.columns[column];
+    return name.text == own.text ||
+           (folded(name.name) == folded(own.name) &&
+            (name.unit == column_name(own.text).unit || mean_the_same(name.unit, own.unit)));
   }
 
   /// What differs in a row of words that is another heading, as it has a name of the first one or units
@@ -262,10 +285,10 @@ class TableReader {
       named = named || std::any_of(dialect_.columns.begin(), dialect_.columns.end(), [&](const auto& column) {
                 return !name.name.empty() && folded(column.name) == folded(name.name);
               });
-      if (!other_name && (c >= dialect_.columns.size() || name.text != dialect_.columns[c].text))
-        other_name = c;
+      if (!other_name && !is_same(name, c)) other_name = c;
       if (!other_unit && !text.empty() &&
-          (c >= dialect_.columns.size() || column_name("", text).unit != dialect_.columns[c].unit))
+          (c >= dialect_.columns.size() ||
+           !mean_the_same(column_name("", text).unit, dialect_.columns[c].unit)))
         other_unit = c;
     }
     const auto other = units ? other_unit : other_name;

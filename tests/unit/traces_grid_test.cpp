@@ -204,14 +204,18 @@ TEST(TraceGrid, CountersContinueWhereTheyStartAgain) {
     if (i != 1000) count.push_back(i % 256);
   }
   EXPECT_TRUE(is_count(RowView{count, 0.0, 1.0, false}));
-  const auto whole = continued(count, 0.0, true, {});
-  EXPECT_EQ(whole[999], 999.0);
-  EXPECT_EQ(whole.back(), 1999.0);
-  EXPECT_EQ(continued(count, 0.0, false, {}).back(), 1999 % 256);
+  const Continued whole = continued(count, 0.0, true, {});
+  EXPECT_EQ(whole.column[999], 999.0);
+  EXPECT_EQ(whole.column.back(), 1999.0);
+  EXPECT_EQ(whole.starts, 7U);
+  EXPECT_EQ(whole.end, 256.0);
+  const Continued as_it_was = continued(count, 0.0, false, {});
+  EXPECT_EQ(as_it_was.column.back(), 1999 % 256);
+  EXPECT_EQ(as_it_was.starts, 0U);
   // Two runs of a counter far from any power of two.
   base::LongColumn<double> twice;
   for (int i = 0; i < 2000; ++i) twice.push_back(i % 1000);
-  EXPECT_EQ(continued(twice, 0.0, true, {}).back(), 999.0);
+  EXPECT_EQ(continued(twice, 0.0, true, {}).column.back(), 999.0);
   base::LongColumn<double> still;
   still.assign(10, 3.0);
   EXPECT_FALSE(is_count(RowView{still, 0.0, 1.0, false}));

@@ -96,6 +96,13 @@ TEST_F(TraceImport, HeadingsOrUnitsThatChangeAreRefused) {
   expect_values("t,F\ns,1\n" + rows(0, 25) + "F,peak\n", values(25));
   // Of scans, not of units.
   expect_values("t,F\ns,1\n0,5\n1,1\n2,5\n", {5.0, 1.0, 5.0});
+  // Words that mean the same, and a third row of a heading.
+  request_.unit = "N";
+  expect_values("t,F\ns,N\n" + rows(0, 25) + "T,f\nsec,Newton\n" + rows(25, 40), values(40));
+  const std::string three = "\"TOA5\",\"logger\"\nTIME,F\nTS,N\n,Avg\n";
+  expect_values(three + rows(0, 25) + three + rows(25, 40), values(40));
+  expect_refused("t,F\ns,mN\n" + rows(0, 25) + "t,F\ns,kN\n" + rows(25, 40),
+                 "another row of units, with 'kN'");
 }
 
 // A row of statistics may have a time that could be one.
@@ -515,6 +522,13 @@ TEST_F(TraceImport, CounterTellsMissingRows) {
       EXPECT_EQ(test::in_memory(imported->tests[0]).scan.back(), 499);
     }
   }
+  // It may be two runs.
+  std::string content = "#,F\n";
+  for (int i = 0; i < 512; ++i) content += fmt::format("{},1\n", i % 256);
+  const auto imported = import(content);
+  ASSERT_TRUE(imported) << imported.error().message;
+  EXPECT_EQ(test::in_memory(imported->tests[0]).scan.back(), 511);
+  EXPECT_THAT(imported->report, HasSubstr("starts again after 255, 1 time, as a counter of 8 bits does"));
   // Something else by the same name.
   expect_values("Points,F\n7,1\n7,2\n7,3\n", {1.0, 2.0, 3.0});
   EXPECT_THAT(report_, HasSubstr("does not count the rows"));
