@@ -14,7 +14,7 @@
 namespace stickslip::traces {
 namespace {
 
-/// Of the beginning that is looked at.
+/// Of the beginning that is looked at, behind the lines to skip.
 constexpr std::size_t kMostLines = 2000;
 constexpr std::size_t kMostBytes = std::size_t{1} << 18U;
 /// A column is numeric where so many of its cells are numbers or holes.
@@ -52,12 +52,15 @@ base::Result<Head> read_head(const Source& source, const DialectOptions& options
   head.encoding = file->encoding();
   std::size_t bytes = 0;
   std::string line;
-  while (head.lines.size() < kMostLines && bytes < kMostBytes) {
+  const auto skip = static_cast<std::size_t>(options.skip);
+  while (head.lines.size() < skip + kMostLines && bytes < kMostBytes) {
     const auto more = file->next(line);
     if (!more) return tl::unexpected(more.error());
     if (!*more) break;
-    bytes += line.size();
-    head.lines.push_back(line);
+    // Those that are skipped count alone; the first may state the separator.
+    const bool is_kept = head.lines.empty() || head.lines.size() >= skip;
+    bytes += is_kept ? line.size() : 0;
+    head.lines.emplace_back(is_kept ? line : std::string{});
   }
   return head;
 }

@@ -1,10 +1,14 @@
 #include "io/traces/trace_time.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <chrono>
+#include <string>
 #include <vector>
+
+#include "io/traces/column_name.hpp"
 
 namespace stickslip::traces {
 namespace {
@@ -38,10 +42,17 @@ char take_half(std::string_view& clock) {
   return half;
 }
 
-/// "12:00:01.5", "00:01.5", "01:00:01.5 PM"
+/// "12:00:01.5", "00:01.5", "01:00:01.5 PM", "12:00:01:500"
 std::optional<TimeCell> read_clock(std::string_view text, char decimal) {
   const char half = take_half(text);
-  const auto parts = split(text, ':');
+  auto parts = split(text, ':');
+  // Two digits would be frames.
+  std::optional<int> thousandths;
+  if (parts.size() == 4 && parts.back().size() == 3) {
+    thousandths = whole(parts.back());
+    if (!thousandths || !whole(parts[2])) return std::nullopt;
+    parts.pop_back();
+  }
   if (parts.size() < 2 || parts.size() > 3) return std::nullopt;
   TimeCell time;
   time.in_seconds = true;
@@ -58,24 +69,40 @@ std::optional<TimeCell> read_clock(std::string_view text, char decimal) {
   if (seconds.kind != CellKind::kNumber || !seconds.unit.empty() || seconds.value < 0.0 ||
       seconds.value >= 61.0)
     return std::nullopt;
-  time.value += seconds.value;
+  time.value += seconds.value + 1e-3 * thousandths.value_or(0);
   if (half != '\0') {
     constexpr double kHalf_s = 12.0 * 3600.0;
     if (parts.size() != 3 || time.value < 3600.0 || time.value >= kHalf_s + 3600.0) return std::nullopt;
     time.value += (time.value >= kHalf_s ? -kHalf_s : 0.0) + (half == 'P' ? kHalf_s : 0.0);
   }
-  time.decimals = seconds.decimals;
+  time.decimals = thousandths ? 3 : seconds.decimals;
   return time;
 }
 
-/// "2026-11-25", "25.11.2026"
+/// 1 of "Jan" or "January"; 0 of other words.
+int month_of(std::string_view word) {
+  constexpr std::array<std::string_view, 12> kMonths{"january",   "february", "march",    "april",
+                                                     "may",       "june",     "july",     "august",
+                                                     "september", "october",  "november", "december"};
+  const std::string name = folded(word);
+  const auto is_it = [&name](std::string_view month) { return name.size() >= 3 && month.starts_with(name); };
+  const auto found = std::find_if(kMonths.begin(), kMonths.end(), is_it);
+  return found == kMonths.end() ? 0 : static_cast<int>(found - kMonths.begin()) + 1;
+}
+
+/// "2026-11-25", "25.11.2026", "25-Nov-2026", "Nov 25, 2026"
 std::optional<std::int64_t> read_date(std::string_view text) {
-  const bool points = text.find('.') != std::string_view::npos;
-  auto parts = split(text, points ? '.' : text.find('/') != std::string_view::npos ? '/' : '-');
-  if (points && parts.size() == 3) std::swap(parts[0], parts[2]);
-  if (parts.size() != 3 || parts[0].size() != 4) return std::nullopt;
+  const std::size_t mark = text.find_first_of("./ -");
+  if (mark == std::string_view::npos) return std::nullopt;
+  auto parts = split(text, text[mark]);
+  if (parts.size() != 3) return std::nullopt;
+  if (month_of(parts[0]) > 0) std::swap(parts[0], parts[1]);
+  if (parts[0].ends_with(',')) parts[0].remove_suffix(1);
+  const int word = month_of(parts[1]);
+  if ((text[mark] == '.' || word > 0) && parts[0].size() != 4) std::swap(parts[0], parts[2]);
+  if (parts[0].size() != 4) return std::nullopt;
   const auto year = whole(parts[0]);
-  const auto month = whole(parts[1]);
+  const auto month = word > 0 ? std::optional{word} : whole(parts[1]);
   const auto day = whole(parts[2]);
   if (!year || !month || !day) return std::nullopt;
   const std::chrono::year_month_day date{std::chrono::year{*year},
@@ -86,10 +113,15 @@ std::optional<std::int64_t> read_date(std::string_view text) {
       .count();
 }
 
-/// "11/25/2026" or "25/11/2026": nobody can tell which part is the month.
-bool is_slash_date(std::string_view text) {
-  const auto parts = split(text, '/');
-  return parts.size() == 3 && parts[2].size() == 4 && whole(parts[0]) && whole(parts[1]) && whole(parts[2]);
+/// "11/25/2026" or "25/11/2026", "25.11.26" or "26-11-25": which part is the month, or the year, is not
+/// known.
+bool is_unclear_date(std::string_view text) {
+  const std::size_t mark = text.find_first_of("/.-");
+  if (mark == std::string_view::npos) return false;
+  const auto parts = split(text, text[mark]);
+  return parts.size() == 3 && parts[0].size() <= 2 && (text[mark] == '/' || parts[2].size() == 2) &&
+         std::all_of(parts.begin(), parts.end(),
+                     [](std::string_view part) { return whole(part).has_value(); });
 }
 
 /// Takes "Z", "+01:00" or nothing from the end. \return the offset in s; nothing if it is no offset.
@@ -112,10 +144,13 @@ std::optional<int> take_offset(std::string_view& clock) {
 }
 
 std::optional<TimeCell> read_moment(std::string_view text, char decimal) {
-  const std::size_t between = text.find_first_of("T ");
-  if (between == std::string_view::npos) return std::nullopt;
+  // The last one before the clock, as the date may have words.
+  const std::size_t colon = text.find(':');
+  const std::size_t between = text.find_last_of("T ", colon);
+  if (colon == std::string_view::npos || between == std::string_view::npos || between > colon)
+    return std::nullopt;
   const auto date = read_date(text.substr(0, between));
-  if (!date && is_slash_date(text.substr(0, between)))
+  if (!date && is_unclear_date(text.substr(0, between)))
     return read_clock(trimmed(text.substr(between + 1)), decimal);
   std::string_view clock = trimmed(text.substr(between + 1));
   const auto offset = take_offset(clock);

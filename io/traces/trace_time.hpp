@@ -20,9 +20,10 @@ struct TimeCell {
   bool in_seconds = false;  ///< "00:01:02.5" and dates have their unit in them.
 };
 
-/// A number, "hh:mm:ss.fff", "mm:ss.f", "hh:mm:ss PM", or a date and time of ISO 8601
-/// ("2026-11-25T12:00:00.5Z") or with points ("25.11.2026 12:00:00"). Of a date with slashes that has its
-/// year last, the clock alone counts: its day and month cannot be told apart. \return nothing for other text.
+/// A number, "hh:mm:ss.fff", "hh:mm:ss:fff", "mm:ss.f", "hh:mm:ss PM", or a date and time of ISO 8601
+/// ("2026-11-25T12:00:00.5Z"), with points ("25.11.2026 12:00:00") or an English month ("25-Nov-2026
+/// 12:00:00"). Of a date whose day and month, or day and year, cannot be told apart ("11/25/2026",
+/// "26-11-25"), the clock alone counts. \return nothing for other text.
 [[nodiscard]] std::optional<TimeCell> read_time_cell(std::string_view text, char decimal);
 /// The same. \param cell  what read_cell() says of the text.
 [[nodiscard]] std::optional<TimeCell> read_time_cell(std::string_view text, const Cell& cell, char decimal);

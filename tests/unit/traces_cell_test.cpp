@@ -95,6 +95,21 @@ TEST(TraceCell, DatesWithPointsHaveTheDayFirstAndSlashesTellNoDate) {
   EXPECT_FALSE(slashes->date_s);
   EXPECT_EQ(slashes->value, 43200.0);
   EXPECT_FALSE(read_time_cell("30.02.2024 12:00:00", '.'));
+  for (const char* const text : {"01-Feb-2024 12:00:00", "1 FEB 2024 12:00:00", "Feb 1, 2024 12:00:00 PM",
+                                 "February 1 2024 12:00:00:000", "2024-Feb-01 12:00:00"}) {
+    const auto words = read_time_cell(text, '.');
+    ASSERT_TRUE(words) << text;
+    EXPECT_EQ(words->date_s, iso->date_s) << text;
+    EXPECT_EQ(words->value, iso->value) << text;
+  }
+  for (const char* const text : {"1/2/24 12:00:00", "24-02-01 12:00:00", "01.02.24 12:00:00"}) {
+    const auto unclear = read_time_cell(text, '.');
+    ASSERT_TRUE(unclear) << text;
+    EXPECT_FALSE(unclear->date_s) << text;
+  }
+  for (const char* const text :
+       {"31-Feb-2024 12:00:00", "01-Fog-2024 12:00:00", "12 Feb 2024", "12:00:00:1x3"})
+    EXPECT_FALSE(read_time_cell(text, '.')) << text;
 }
 
 TEST(TraceColumnName, UnitIsInBracketsBehindAWordOrBelow) {
