@@ -185,6 +185,15 @@ TEST_F(TraceDialect, ADecimalMarkThatChangesIsRefused) {
   ASSERT_TRUE(import(content));
 }
 
+TEST_F(TraceDialect, SkipReachesBeyondTheLinesThatAreLookedAt) {
+  std::string content;
+  for (int i = 0; i < 2500; ++i) content += "a line of a log\n";
+  content += "t (s),F\n0.00,1\n0.01,2\n0.02,3\n";
+  expect_refused(content, "no table of numbers is found in its first 2000 lines");
+  request_.dialect.skip = 2500;
+  expect_values(content, {1.0, 2.0, 3.0});
+}
+
 TEST_F(TraceDialect, InspectionShowsClockTimes) {
   test::write_content(request_.path, "Clock,F\n12:00:00.00,1\n12:00:00.01,2\n12:01:02.50,3\n");
   auto text = inspect(request_);
