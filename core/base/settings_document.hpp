@@ -47,7 +47,7 @@ struct Settings::Document {
   std::optional<Error> first_missing;
   /// Origins of the values and tables that set() added, by path.
   std::map<std::string, std::string, std::less<>> origins;
-  std::vector<std::string> changes;  ///< Origins of all changes, in order.
+  std::vector<std::string> changes;  ///< Origins of all calls of set() and remove(), in order.
 
   /// "file:line" of the value, or the origin of the set() that wrote it or a table around it.
   [[nodiscard]] std::string place_of(std::string_view path, const toml::node& value) const;

@@ -60,7 +60,7 @@ struct BoardInfo {
 /// How a read ended.
 enum class ReadStatus {
   kScans,         ///< The block holds at least one scan.
-  kTimeout,       ///< No scan arrived in time; also before start() and after stop().
+  kTimeout,       ///< No scan arrived in time; also before start() and after stop(), unless kBoardMissing.
   kEndOfInput,    ///< There will be no more scans (end of a replay or a simulation). Repeats.
   kOverrun,       ///< The board lost scans and halted; start() again. Reported once.
   kSuspended,     ///< The computer was suspended, and scans were lost; start() again. Reported once.

@@ -62,7 +62,8 @@ class SlipFollower {
   [[nodiscard]] const LiveCycle& slip() const noexcept { return slip_; }
   /// Mutable, so that the caller can set values that it knows better.
   [[nodiscard]] LiveCycle& slip() noexcept { return slip_; }
-  /// Present estimates of ω, γ and r; not before the first open().
+  /// Estimates of ω, γ and r in use for the slip begun last: its own fit counts from the next open() on. Not
+  /// before the first open().
   [[nodiscard]] const model::SharedParameters& shared() const noexcept { return now_.shared; }
 
  private:

@@ -32,7 +32,9 @@ struct Trace {
   /// Exact for the model: with c − βt in place of c, K and S are constant and the stick rate is r − β.
   Drift drift;
 
-  /// Belt speed over the time of the trace.
+  /// Belt speed relative to its largest, on the axis of time_s. Constant, 1 throughout, unless a change is
+  /// known: measured between the first and the last slip, planned with a start that was found, or holds at a
+  /// known pull speed. Constant if no slip was found.
   model::BeltMotion belt;
 
   /// Positions of the first scans after breaks, rising: the motion between such a scan and the one before it

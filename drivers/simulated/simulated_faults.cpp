@@ -50,7 +50,10 @@ class FaultyBoard final : public daq::Board {
     return ReadStatus::kOverrun;
   }
 
-  void stop() noexcept override { board_->stop(); }
+  void stop() noexcept override {
+    overrun_is_due_ = false;
+    board_->stop();
+  }
   [[nodiscard]] std::string last_error() const override {
     return missing_ ? "the simulated board was pulled out" : board_->last_error();
   }

@@ -138,6 +138,21 @@ TEST(SimulatedBoard, AnOverrunLosesScansAndHaltsUntilStartedAgain) {
                          static_cast<base::ScanIndex>(daq::ScanBlock::kMaxScans));
 }
 
+TEST(SimulatedBoard, OneThatWasStoppedTellsNoOverrun) {
+  SleepingClock clock;
+  auto tester =
+      make_simulated_tester(faulty({.overruns_every_s = 0.5, .losses_every_s = 0.0, .seed = 5}), clock);
+  ASSERT_TRUE(tester);
+  daq::Board& board = *tester->board;
+  daq::ScanBlock block;
+  for (int i = 0; i < 500; ++i) {
+    ASSERT_TRUE(board.start());
+    static_cast<void>(board.read(block, 1000ms));
+    board.stop();
+    ASSERT_EQ(board.read(block, 1ms), ReadStatus::kTimeout);
+  }
+}
+
 TEST(SimulatedBoard, OneThatWasPulledOutStaysAwayAndTheNextGoesOnByTheClock) {
   SleepingClock clock;
   SimulatedBoardSettings settings = faulty({.overruns_every_s = 0.0, .losses_every_s = 20.0, .seed = 5});
