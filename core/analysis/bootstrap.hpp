@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/analysis/slip_estimator.hpp"
@@ -38,6 +39,11 @@ struct Bootstrap {
   std::vector<BootstrapSpread> spreads;  ///< S, K, S − K, ω and γ/2ω; empty if there are none.
   std::string reason;                    ///< Why there are none.
 };
+
+/// None, with a reason.
+[[nodiscard]] inline Bootstrap no_bootstrap(const BootstrapSettings& settings, std::string reason) {
+  return {settings, 0, 0, {}, std::move(reason)};
+}
 
 /// Draws as many slips as the means count, with replacement, and fits them anew, as the test was fitted: with
 /// one S and K if SlipEstimates::uniform is present, else slip by slip. Neighbours are drawn in blocks of

@@ -21,6 +21,7 @@
 #include "core/analysis/signal_check.hpp"
 #include "core/analysis/slack.hpp"
 #include "core/analysis/slip_list.hpp"
+#include "core/analysis/test_fit.hpp"
 #include "core/analysis/traditional.hpp"
 #include "core/base/contract.hpp"
 #include "core/base/nan.hpp"
@@ -315,8 +316,9 @@ TestResults TestAnalysis::finish() {
     const auto turning_points = [&] {
       return seen_again.valid() ? seen_again.get() : detection_by(detect::EstimatorTier::kTurningPoints)();
     };
+    TestFit fit{settings_};
     TestEstimates estimates =
-        is_fitted ? estimate(trace, slips, sigma, see_again)
+        is_fitted ? fit.estimate(trace, slips, sigma, see_again)
         : slack.count > 0
             ? by_turning_points(trace, slips, turning_points(), why_no_K, mostly_slack ? Slack{} : slack)
             : by_turning_points(
@@ -368,15 +370,22 @@ TestResults TestAnalysis::finish() {
     if (is_fitted && !estimates.model_describes)
       add_distance_to_mean_force(mean_force(trace, slips), estimates.results);
     take_model_results(estimates.results, results);
-    if (!settings_.tester.transducer.is_ideal() && !transducer_is_off_) {
+    tester_ = fit.tester();
+    tester_check_ = fit.tester_check();
+    if (!settings_.tester.transducer.is_ideal() && !fit.took_transducer_off()) {
       base::add(
           results.findings,
           base::make_finding(base::FindingCode::kTransducerShows,
                              "the load cell and filter that are stated are not taken off the trace: S and K "
                              "are as read"));
     }
-    draw_slips_again(trace, sigma, estimates);
-    results.mu_slope = mu_slope(trace, slips, sigma, estimates);
+    if (!fits_whole_test()) {
+      no_bootstrap("turning points are no fit: --estimator fit");
+      results.mu_slope = Estimate::none("turning points tell no damping");
+    } else {
+      if (settings_.bootstrap.count > 0) bootstrap_ = fit.bootstrap(trace, sigma, estimates);
+      results.mu_slope = fit.mu_slope(trace, slips, sigma, estimates);
+    }
     if (fits_whole_test() && estimates.model_describes) speed_results(trace, estimates, results);
     if (verdict.transition_slip) {
       results.transition_time = transition_time(trace, estimates, slips, *verdict.transition_slip);
@@ -493,151 +502,9 @@ base::LongColumn<detect::LiveCycle> TestAnalysis::detected(const detect::LiveSet
   return cycles;
 }
 
-SectionSettings TestAnalysis::section_settings() const {
-  return {.scratch = settings_.scratch_folder,
-          .first_counts = settings_.skipped.first_slip,
-          .keep_fitted = !settings_.tester.transducer.is_ideal(),
-          .keep_section = settings_.bootstrap.count > 0,
-          .on_threads = !settings_.live};
-}
-
-TestEstimates TestAnalysis::estimate(estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
-                                     double sigma, const std::function<void()>& not_enough) {
-  // Where the speed changes, the mean of a cycle does so too, without any drift of the paper.
-  if (!settings_.skipped.drift && trace.belt.is_constant()) trace.drift = significant_drift(trace, slips);
-  trace.belt.take_off_drift(trace.drift.rate_per_s);
-  ErrorFactors factors;
-  const auto estimates = [&](const estimate::SharedPrior& prior) {
-    TestEstimates found =
-        estimate_in_sections(trace, slips, sigma, prior, settings_.tester, section_settings());
-    widen_errors(factors, found);
-    return found;
-  };
-  TestEstimates alone = estimates({});
-  if (!settings_.tester.transducer.is_ideal()) {
-    const auto taken_off = take_off_transducer(trace, slips, sigma, alone);
-    factors = taken_off.value_or(ErrorFactors{});
-    transducer_is_off_ = taken_off.has_value();
-  }
-  if (alone.model_describes) tester_ = alone.tester;
-  if (!alone.model_describes || (alone.misfit.is_significant() && trace.belt.is_constant())) not_enough();
-  const auto held = [&](const estimate::SharedPrior& prior) {
-    TestEstimates with = estimates(prior);
-    with.rung = Rung::kTwoParameterLaw;
-    with.rung_reason = alone.results.delta_mu.reason;
-    return with;
-  };
-  if (!settings_.prior.coupling) {
-    if (!alone.model_describes && trace.belt.has_one_speed()) {
-      TestEstimates typical = held(held_damping(trace, slips));
-      if (typical.model_describes && may_hold_damping(typical.results)) {
-        tell_held_damping(typical.results);
-        return typical;
-      }
-      // Where a fit stopped far from the best one, its residuals say nothing about the law.
-      if (typical.misfit.residual_sigmas() < alone.misfit.residual_sigmas()) alone.misfit = typical.misfit;
-    }
-    return settings_.prior.empty() ? std::move(alone) : estimates(settings_.prior);
-  }
-  TestEstimates with = held(settings_.prior);
-  if (!tester_ || !with.tester) return with;
-  with.rung_reason = "the tester is characterised, and the damping found agrees with it";
-  tester_check_ = check_tester(*tester_, *with.tester, *settings_.prior.coupling, settings_.tester);
-  if (!tester_check_->used() || !with.model_describes) return alone;
-  if (tester_check_->probability < kSlopeLevel) add_distance(alone.results, with.results);
-  return with;
-}
-
-std::optional<ErrorFactors> TestAnalysis::take_off_transducer(estimate::Trace& trace,
-                                                              const base::LongColumn<detect::Fall>& slips,
-                                                              double sigma, TestEstimates& estimates) const {
-  const ThroughTransducer through{settings_.tester.transducer, 1.0 / settings_.scan_rate_Hz,
-                                  settings_.scratch_folder};
-  const auto fit = [&](const estimate::Trace& of, const base::LongColumn<detect::Fall>& own) {
-    return estimate_in_sections(of, own, sigma, {}, settings_.tester, section_settings());
-  };
-  if (slips.size() > ThroughTransducer::kMostSlips) return std::nullopt;
-  std::optional<TestEstimates> found =
-      through.estimate(trace, estimates, [&](const estimate::Trace& of) { return fit(of, slips); });
-  if (!found || !found->model_describes) return std::nullopt;
-  const auto fit_own = [&](const estimate::Trace& of) {
-    base::LongColumn<detect::Fall> own{settings_.scratch_folder};
-    for (std::size_t i = 0; i < slips.size() && slips[i].trough_at + 1.0 < static_cast<double>(of.size());
-         ++i)
-      own.push_back(slips[i]);
-    return own.empty() ? TestEstimates{} : fit(of, own);
-  };
-  std::optional<ErrorFactors> factors = through.error_factors(trace, *found, sigma, fit_own);
-  if (!factors) return std::nullopt;
-  trace.value = through.force(trace, *found);
-  estimates = *std::move(found);
-  widen_errors(*factors, estimates);
-  return factors;
-}
-
-Estimate TestAnalysis::mu_slope(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
-                                double sigma, const TestEstimates& estimates) const {
-  if (!fits_whole_test()) return Estimate::none("turning points tell no damping");
-  if (!tester_)
-    return Estimate::none(estimates.results.delta_mu.reason.empty() ? estimates.rung_reason
-                                                                    : estimates.results.delta_mu.reason);
-  if (!settings_.prior.coupling) {
-    return Estimate::none(
-        "the tester is not characterised: its damping and the paper's slope are one number, gamma");
-  }
-  const auto slope = [&](const TesterEstimate& found) {
-    return slope_of_friction(found, *settings_.prior.coupling, settings_.tester.gravity_m_per_s2);
-  };
-  Estimate whole = slope(*tester_);
-  if (!estimates.misfit.is_significant()) return whole;
-  // What the law leaves out moves γ from one part of a test to the next.
-  constexpr std::size_t kParts = 3;
-  constexpr std::size_t kFewestSlips = 4;
-  constexpr double kLeastAgreement = 0.01;
-  const std::size_t size = slips.size() / kParts;
-  if (size < kFewestSlips) {
-    return Estimate::none(fmt::format("the fit leaves misfit, and {} slips make no {} parts that could agree",
-                                      slips.size(), kParts));
-  }
-  std::vector<Estimate> parts;
-  for (std::size_t part = 0; part < kParts; ++part) {
-    base::LongColumn<detect::Fall> own{settings_.scratch_folder};
-    for (std::size_t i = part * size; i < (part + 1) * size; ++i) own.push_back(slips[i]);
-    const TestEstimates found =
-        estimate_in_sections(trace, own, sigma, {}, settings_.tester, section_settings());
-    if (!found.model_describes || !found.tester) {
-      return Estimate::none(fmt::format("part {} of {} of the test has none: {}", part + 1, kParts,
-                                        found.results.delta_mu.reason));
-    }
-    parts.push_back(slope(*found.tester));
-    if (!parts.back().value || !parts.back().standard_error)
-      return Estimate::none(
-          fmt::format("part {} of {} of the test has none: {}", part + 1, kParts, parts.back().reason));
-  }
-  const double probability = probability_of_agreement(parts);
-  if (probability >= kLeastAgreement) return whole;
-  return Estimate::none(
-      fmt::format("the {} parts of the test differ: {:.2g}, {:.2g} and {:.2g} s/m, probability {:.1g}",
-                  kParts, *parts[0].value, *parts[1].value, *parts[2].value, probability));
-}
-
 void TestAnalysis::no_bootstrap(std::string reason) {
-  if (settings_.bootstrap.count == 0) return;
-  bootstrap_ = Bootstrap{};
-  bootstrap_->settings = settings_.bootstrap;
-  bootstrap_->reason = std::move(reason);
-}
-
-void TestAnalysis::draw_slips_again(const estimate::Trace& trace, double sigma,
-                                    const TestEstimates& estimates) {
-  if (settings_.bootstrap.count == 0) return;
-  if (!fits_whole_test()) return no_bootstrap("turning points are no fit: --estimator fit");
-  if (!estimates.model_describes) return no_bootstrap("no fit describes the test: " + estimates.rung_reason);
-  if (transducer_is_off_)
-    return no_bootstrap("load cell and filter are taken off: the drawings would not show their uncertainty");
-  if (!estimates.section)
-    return no_bootstrap(fmt::format("the test has more than {} slips", kMostSlipsTogether));
-  bootstrap_ = bootstrap_slips(trace, *estimates.section, sigma, estimates.prior, settings_.bootstrap);
+  if (settings_.bootstrap.count > 0)
+    bootstrap_ = analysis::no_bootstrap(settings_.bootstrap, std::move(reason));
 }
 
 void TestAnalysis::speed_results(const estimate::Trace& trace, const TestEstimates& estimates,

@@ -15,49 +15,23 @@
 #include <utility>
 #include <vector>
 
+#include "core/analysis/analysis_settings.hpp"
 #include "core/analysis/bootstrap.hpp"
 #include "core/analysis/characterisation.hpp"
 #include "core/analysis/results.hpp"
 #include "core/analysis/sections.hpp"
 #include "core/analysis/signal_check.hpp"
-#include "core/analysis/skipped_corrections.hpp"
 #include "core/analysis/slack.hpp"
-#include "core/analysis/transducer_correction.hpp"
 #include "core/base/long_column.hpp"
 #include "core/base/scan_index.hpp"
 #include "core/detect/cycle.hpp"
 #include "core/detect/fall_finder.hpp"
 #include "core/detect/live_cycle.hpp"
 #include "core/detect/live_detector.hpp"
-#include "core/estimate/shared_prior.hpp"
 #include "core/estimate/trace.hpp"
-#include "core/model/method.hpp"
 #include "core/model/pull_speed.hpp"
-#include "core/model/tester.hpp"
 
 namespace stickslip::analysis {
-
-struct AnalysisSettings {
-  double scan_rate_Hz = 350.0;    ///< Granted; > 0.
-  double step_coefficient = 0.0;  ///< One A/D step; 0 if unknown, then estimated from the trace.
-  model::Tester tester;
-  model::Method method;
-  /// Estimator of S, K and S − K, of each cycle and of the test. Only kFit fits the whole test at its end.
-  /// With the other, where the fit does not describe the test, and where the coupling went slack, results
-  /// come from cycles by turning points: no ω, no γ and no result that needs them.
-  detect::EstimatorTier estimator = detect::EstimatorTier::kFit;
-  estimate::SharedPrior prior;  ///< Of the tester's parameters; may be empty.
-  SkippedCorrections skipped;   ///< Corrections to leave out, to show their effect.
-  /// Folder for a scratch file that holds the scans of a long test except the latest few minutes; empty: all
-  /// in memory.
-  std::filesystem::path scratch_folder;
-  /// Whether add() detects slips. If not, finish() does, on a thread of its own beside the fits: for scans
-  /// that are all there already.
-  bool live = true;
-  BootstrapSettings bootstrap;  ///< Of the results, at the end.
-  /// One A/D step of the measured pull speed, ≥ 0; nullopt: no speed channel, speed() is not called.
-  std::optional<double> speed_step_m_per_s;
-};
 
 /// The analysis of one test. Thread-bound. Memory grows with the test by about 34 bytes a scan and 0.4 kB a
 /// slip. With a scratch folder it grows by 16 bytes a spike, 24 bytes a gap and 8 bytes for 64 scans (and by
@@ -155,30 +129,13 @@ class TestAnalysis {
   void keep_cycles(const estimate::Trace& trace, const TestEstimates& estimates,
                    const base::LongColumn<detect::Fall>& slips,
                    const std::function<bool(const detect::Fall&)>& tells_delta_mu);
-  /// μ′ of the paper over that of the characterisation, from the damping that the test alone has.
-  [[nodiscard]] Estimate mu_slope(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
-                                  double sigma, const TestEstimates& estimates) const;
+  /// If a bootstrap is asked for: why there is none.
   void no_bootstrap(std::string reason);
-  void draw_slips_again(const estimate::Trace& trace, double sigma, const TestEstimates& estimates);
   /// Fills pull_speed_measured, from the stick rate and ω₀, or tells why it has no value; adds the findings
   /// of tester_check_, or kPullSpeed without it. If the sled may never have stuck, S and S − K become absent,
   /// too. \param results  with K already.
   void speed_results(const estimate::Trace& trace, const TestEstimates& estimates,
                      TestResults& results) const;
-  [[nodiscard]] SectionSettings section_settings() const;
-  /// From the highest rung of the fit that describes the test; if none does, what the fit left. With a
-  /// characterised tester γ is the tester's, unless the test alone contradicts it. Sets the trace's drift,
-  /// takes a stated transducer off its values, and fills tester_ and tester_check_. \param not_enough  not
-  /// empty; called once at most, as soon as the fit is likely to need turning points beside it.
-  [[nodiscard]] TestEstimates estimate(estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
-                                       double sigma, const std::function<void()>& not_enough);
-  /// Takes off the trace what the transducer adds to the slips, and replaces `estimates`, which are those of
-  /// the trace, by those without it. \return what errors of fits to the trace are to be multiplied by;
-  /// nullopt, with nothing changed, where the slips are more than ThroughTransducer::kMostSlips or the rounds
-  /// do not settle.
-  [[nodiscard]] std::optional<ErrorFactors> take_off_transducer(estimate::Trace& trace,
-                                                                const base::LongColumn<detect::Fall>& slips,
-                                                                double sigma, TestEstimates& estimates) const;
   /// Estimates from cycles with turning points. \param reason  why no results of a fit are there.
   [[nodiscard]] TestEstimates by_turning_points(const estimate::Trace& trace,
                                                 const base::LongColumn<detect::Fall>& slips,
@@ -209,7 +166,6 @@ class TestAnalysis {
   std::optional<TesterEstimate> tester_;
   std::optional<TesterCheck> tester_check_;
   std::optional<Bootstrap> bootstrap_;
-  bool transducer_is_off_ = false;  ///< What a stated transducer adds was taken off the trace.
   std::vector<base::ScanIndex> spikes_;
   std::vector<double> spike_coefficients_;
 };
