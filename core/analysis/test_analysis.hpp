@@ -48,8 +48,8 @@ struct AnalysisSettings {
   detect::EstimatorTier estimator = detect::EstimatorTier::kFit;
   estimate::SharedPrior prior;  ///< Of the tester's parameters; may be empty.
   SkippedCorrections skipped;   ///< Corrections to leave out, to show their effect.
-  /// Folder for a scratch file that holds the scans of a long test except the latest few minutes; empty: all
-  /// in memory.
+  /// Folder for scratch files that hold the scans of a long test except the latest few minutes; empty: all in
+  /// memory.
   std::filesystem::path scratch_folder;
   /// Whether add() detects slips. If not, finish() does, on a thread of its own beside the fits: for scans
   /// that are all there already.
@@ -97,8 +97,8 @@ class TestAnalysis {
   /// and zero are absent: core/pipeline adds them.
   [[nodiscard]] TestResults finish();
 
-  /// After finish(): one cycle for each slip; empty if there is none. Cycle::delta_mu is NaN for slips that
-  /// ended in slack, and for all if the results have no S − K.
+  /// After finish(): one cycle for each slip; empty if there is none. Cycle::delta_mu is also NaN for slips
+  /// that ended in slack, and for all if the results have no S − K.
   [[nodiscard]] const base::LongColumn<detect::Cycle>& cycles() const noexcept { return cycles_; }
   /// Moves the cycles out.
   [[nodiscard]] base::LongColumn<detect::Cycle> take_cycles() { return std::exchange(cycles_, {}); }
