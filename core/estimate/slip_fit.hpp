@@ -72,7 +72,7 @@ inline constexpr double kFitSettled = 1e-5;
 /// \param prior  of the shared parameters.
 /// \param settled  The fit has converged when a step changes the cost by at most this plus 1e-10 of it.
 /// \return converged = false without windows; if the first guess is not admissible: ω > 0, r > 0, |γ| < 2ω,
-/// S − K ≥ −6σ; if the fit does not settle in 60 iterations, 200 with a prior; or if the scans do not
+/// S − K ≥ −6σ; if the fit does not settle in 60 iterations, 200 with a prior; or if scans and prior do not
 /// determine the parameters.
 [[nodiscard]] SlipFit fit_slips(const Trace& trace, std::vector<SlipWindow>& windows,
                                 const model::SharedParameters& shared, double sigma,
