@@ -27,8 +27,8 @@ struct SpeedPoint {
 
 class PullSpeed {
  public:
-  /// Longest interval of time after the start in which the belt pulls, v > 0. A speed of 0 at one instant
-  /// does not end it.
+  /// Maximal interval of time after the start in which the belt pulls, v > 0: it begins and ends where the
+  /// belt rests or returns. A speed of 0 at one instant does not end it.
   struct Pull {
     double start_s = 0.0;
     double end_s = 0.0;  ///< Infinity if it never stops.
