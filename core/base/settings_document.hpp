@@ -26,8 +26,8 @@ inline constexpr std::size_t kLongestParserMessage = 200;
   return parent.empty() ? std::string{key} : fmt::format("{}.{}", parent, key);
 }
 
-/// One table of the document, or the place of an absent one (`table` is null), with the keys that were asked
-/// for: finish() refuses all others.
+/// One table of the document, or the place of one that is absent or no table (`table` is null), with the keys
+/// that were asked for: finish() refuses all others.
 struct Settings::Node {
   const toml::table* table = nullptr;
   std::string path;        ///< Dotted, empty for the root.
