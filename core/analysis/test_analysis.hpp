@@ -59,9 +59,10 @@ struct AnalysisSettings {
   std::optional<double> speed_step_m_per_s;
 };
 
-/// The analysis of one test. Thread-bound. Memory grows with the test by about 34 bytes a scan and 0.4 kB a
-/// slip. With a scratch folder it grows by 16 bytes a spike, 24 bytes a gap and 8 bytes for 64 scans (and by
-/// the slips where the pull speed changes), and functions may throw std::system_error.
+/// The analysis of one test. Thread-bound. Memory grows with the test by about 34 bytes a scan, 8 more with
+/// speed(), and 0.4 kB a slip; finish() needs more for a while where it takes a transducer off. With a
+/// scratch folder memory grows by 16 bytes a spike, 24 bytes a gap and 8 bytes for 64 scans (and by the slips
+/// where the pull speed changes), and functions may throw std::system_error.
 class TestAnalysis {
  public:
   /// \throws std::invalid_argument unless the rate is positive and finite.
