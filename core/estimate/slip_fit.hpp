@@ -22,7 +22,8 @@
 
 namespace stickslip::estimate {
 
-/// Scans [first, end) of the trace that belong to one slip, with its parameters.
+/// Scans [first, end) of the trace that belong to one slip from sticking and to the swings that follow it
+/// without a stick; with the slip's parameters.
 struct SlipWindow {
   std::size_t first = 0;
   std::size_t end = 0;

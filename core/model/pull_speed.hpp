@@ -34,7 +34,7 @@ class PullSpeed {
     double end_s = 0.0;  ///< Infinity if it never stops.
   };
 
-  /// Most points that a plan may have.
+  /// Most points that a plan or a measured course may have.
   static constexpr std::size_t kMostPoints = 100'000;
 
   /// \param points  the first at 0 s, times not falling; two points at one time are a jump. The belt is at
