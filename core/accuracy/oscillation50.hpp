@@ -18,7 +18,7 @@ using Real = boost::multiprecision::cpp_dec_float_50;
 [[nodiscard]] inline Real pi50() { return boost::math::constants::pi<Real>(); }
 
 /// c(t) of [11], solved from the characteristic equation; any ω². c(0) = K + D, c′(0) = r. The functions that
-/// seek a first time require γ ≥ 0.
+/// seek a first time require γ ≥ 0 and ω₀² > 0.
 struct Oscillation50 {
   Real K, D, r, gamma, omega_squared;
 

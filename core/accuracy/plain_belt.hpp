@@ -17,7 +17,7 @@ class PlainBelt {
 
   /// r = ω₀² v/g, 1/s; 0 from halt() to the end of its segment, and after the last segment.
   [[nodiscard]] double rate() const noexcept { return rate_; }
-  /// When the present segment ends, s; infinity after the last.
+  /// When the present segment ends, s after scan 0; infinity after the last.
   [[nodiscard]] double end_s() const noexcept { return end_s_; }
   /// Whether the belt stops as soon as the force is gone; the caller then calls halt().
   [[nodiscard]] bool halts_when_unloaded() const noexcept { return halts_; }

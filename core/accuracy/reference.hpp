@@ -33,13 +33,14 @@ class Reference {
   void next(std::span<double> coefficient);
   /// Skips `scans` scans, ≥ 0; takes time only for the events between.
   void skip(std::int64_t scans);
-  /// The coefficient at the next scan, with all digits; does not advance.
+  /// The coefficient at the next scan, with all digits. next() still begins with that scan, but the functions
+  /// below tell the events up to it.
   [[nodiscard]] Real now();
 
   /// Slips so far that ended because the sled reached the belt's speed.
   [[nodiscard]] std::int64_t capture_count() const noexcept { return capture_count_; }
   /// Start of the present piece of motion, s after scan 0: a stick, a slip, a flight, or a ride with the belt
-  /// in a slack coupling, on a belt of one speed.
+  /// in a slack coupling. Each belt segment begins a piece, and so does a halt within one.
   [[nodiscard]] const Real& piece_start_s() const noexcept { return start_s_; }
   /// The latest onset of a slip from sticking, s after scan 0; nullopt if there was none.
   [[nodiscard]] const std::optional<Real>& last_onset_s() const noexcept { return last_onset_s_; }

@@ -30,7 +30,7 @@ struct TierRow {
   std::string reason;         ///< Why there are no numbers; empty if there are.
   double bias = 0.0;          ///< Mean of (S − K found)/(true S − K) − 1.
   double deviation = 0.0;     ///< Standard deviation of (S − K found)/(true S − K).
-  double over_bound = 0.0;    ///< deviation over the Cramér–Rao bound of a cycle.
+  double over_bound = 0.0;    ///< deviation over the relative Cramér–Rao bound of a cycle.
   double us_per_cycle = 0.0;  ///< Computing time of a whole test over its cycles.
 };
 
@@ -44,7 +44,7 @@ struct TierScene {
 /// Result of an external program for one scene; it gets whole tests and measures its own time.
 struct PeerOutcome {
   double ns_per_scan = 0.0;       ///< Of the first test.
-  std::vector<double> estimates;  ///< S − K of each cycle of all tests, but for the first cycle of each test.
+  std::vector<double> estimates;  ///< S − K of the cycles found in all tests, without the first of each test.
 };
 
 /// An external program to compare with.

@@ -25,8 +25,8 @@ struct AnalysisSettings {
   detect::EstimatorTier estimator = detect::EstimatorTier::kFit;
   estimate::SharedPrior prior;  ///< Of the tester's parameters; may be empty.
   SkippedCorrections skipped;   ///< Corrections to leave out, to show their effect.
-  /// Folder for a scratch file that holds the scans of a long test except the latest few minutes; empty: all
-  /// in memory.
+  /// Folder for scratch files that hold the scans of a long test except the latest few minutes; empty: all in
+  /// memory.
   std::filesystem::path scratch_folder;
   /// Whether add() detects slips. If not, finish() does, on a thread of its own beside the fits: for scans
   /// that are all there already.

@@ -13,8 +13,8 @@ namespace stickslip::analysis {
 
 /// Belt speed over the time of the trace: the plan, shifted so that it agrees with the loading, the rise of
 /// the force from rest to the first slip. A least-squares fit of coefficient = zero + rate × travel to the
-/// scans between 20 and 80 % of the rise determines rate and start. Zero is the mean of the scans before the
-/// start; 0 if there are fewer than 16.
+/// scans between 20 and 80 % of the rise determines rate and start. Zero is the mean of the usable scans
+/// up to 10 ms before the start; 0 if there are fewer than 16.
 ///
 /// A belt that starts with a jump to v leaves the sled behind for v/(K g), and the loading lags by half of
 /// that; the lag is subtracted. From 20 scans with noise of 1/50 of S − K the start has a standard error of

@@ -52,8 +52,8 @@ struct Bootstrap {
 /// \param estimates  of the whole test; converged.
 /// \param prior  with which it was fitted.
 /// \param settings  count > 0 (contract).
-/// \return without spreads, but with a reason: of fewer than eight slips that count, where the pull speed
-/// changes, or if fewer than nine drawings in ten converge.
+/// \return without spreads, but with a reason: if fewer than eight slips count, if trace.belt is not
+/// constant, or if fewer than nine drawings in ten converge.
 [[nodiscard]] Bootstrap bootstrap_slips(const estimate::Trace& trace, const SlipEstimates& estimates,
                                         double sigma, const estimate::SharedPrior& prior,
                                         const BootstrapSettings& settings);

@@ -16,7 +16,7 @@
 
 namespace stickslip::analysis {
 
-/// Estimate of the tester's parameters from one test.
+/// Estimate of the tester's parameters from one test, or of a load cell's from one tap: then v/g is 0.
 struct TesterEstimate {
   double omega = 0.0;  ///< rad/s, damped.
   double gamma_over_2omega = 0.0;
@@ -42,7 +42,8 @@ struct Characterisation {
 
 /// TesterCheck::probability below which a test is reported as disagreeing with the characterisation. Every
 /// test is checked: at 1e-4 a season of tests of a sound tester causes hardly one false report, while a
-/// changed spring is off by many standard errors.
+/// changed spring is off by many standard errors. Ring-downs disagree if Characterisation::probability() is
+/// below it.
 inline constexpr double kDisagreement = 1e-4;
 /// TesterCheck::probability below which the characterisation is not used for a test. Without it γ from ten
 /// cycles has a standard error 28 times larger, so a false rejection costs much. At 1e-4 false rejections

@@ -31,7 +31,8 @@ struct Pooling {
   bool regimes = false;
 };
 
-/// One test with its results: input of group_by_speed().
+/// One test with its results: input of group_by_speed(). The daemon, which groups nothing, sets `results` and
+/// `slips` alone.
 struct MeasuredTest {
   std::optional<double> pull_speed_m_per_s;  ///< Nominal; nullopt if unknown.
   TestResults results;

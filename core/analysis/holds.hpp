@@ -23,7 +23,8 @@ struct Hold {
 
 /// Holds between slips. In a hold the force takes at least three times as long from a trough to the next peak
 /// as it needs at the rate of the other rises, and stands still in between, but for creep. Stop and go are
-/// where the level of the hold meets the two rises. A sled that slides as smoothly looks the same.
+/// where the level of the hold meets the two rises; without a rise before the hold the belt stopped at the
+/// trough. A sled that slides as smoothly looks the same.
 /// \param slips  in the order of time.
 /// \param sigma  noise of a scan.
 /// \return in the order of time; none across a break, and none for fewer than five slips.

@@ -67,7 +67,7 @@ void void_start(const TesterEstimate& tester, double gravity_m_per_s2, TestResul
 
 /// Sets S − K, which lies between 0 and `bound` and is not told from 0, to half of the bound, with as much
 /// systematic uncertainty. Sets S to K plus half the bound, with the systematic uncertainty of K and that
-/// half; without K, S stays. Neither has a standard error. Q and threshold_speed become absent.
+/// half. Neither has a standard error. Without K, S stays as it is. Q and threshold_speed become absent.
 void tell_bound(double bound, TestResults& results);
 
 /// Fills misfit, and misfit_place if the misfit has a place.

@@ -49,7 +49,7 @@ class MeanResidual {
   [[nodiscard]] double birge_ratio() const noexcept;
 
   /// Frequency, over that of the oscillation, of the sine between 2 and 20 that explains most of what repeats
-  /// after the onset; nullopt if it explains less than half.
+  /// after the onset; nullopt unless it explains more than half, and if nothing repeats.
   [[nodiscard]] std::optional<double> swing() const noexcept;
 
  private:

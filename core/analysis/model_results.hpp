@@ -28,9 +28,10 @@ inline constexpr double kLargestResidualSigmas = 5.0;
 /// \param sigma  noise of one scan.
 [[nodiscard]] bool model_describes(const SlipEstimates& estimates, double sigma);
 
-/// Slips that count in the means: not the first and none after a hold if there are others (unless the first
-/// is kept), and none whose S − K its few scans — a gap, spikes, the end of the pull — leave more uncertain
-/// than the typical S − K itself is large.
+/// Slips that count in the means, of those that began from sticking. Of three or more the first and those
+/// after a hold are left out, unless estimates.first_counts or no other is left. Of the others those are left
+/// out whose error of S − K exceeds the median |S − K|, as few scans make it (a gap, spikes, the end of the
+/// pull), unless all do.
 /// \param estimates  converged.
 [[nodiscard]] std::vector<estimate::SlipWindow> slips_that_count(const SlipEstimates& estimates);
 

@@ -17,7 +17,7 @@
 
 namespace stickslip::analysis {
 
-/// Sums over the slips of one test that have an S − K: input of pool_slips().
+/// Sums over the slips of one test that slip_sums() counts: input of pool_slips().
 struct SlipSums {
   double count = 0.0;
   double sum = 0.0;         ///< Of S − K.

@@ -24,7 +24,7 @@ struct NoPull {
 };
 
 /// Why the force cannot be that of a pull: it jumped, or was a touch. Nullopt for a pull, and for a trace
-/// that begins or ends under load or lies in the noise.
+/// that begins under load, ends under load or fewer than five scans after it, or lies in the noise.
 ///
 /// A jump: the force rises from below a quarter of NoPull::level, L, by L/2 or more within three scans, as a
 /// switched signal does behind an anti-alias filter of a sixth of the scan rate, and the median of three

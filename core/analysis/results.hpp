@@ -62,12 +62,12 @@ struct TestResults {
   std::string misfit_place;
 
   /// s after the record's first scan, only for mixed: onset of the first slip that ended otherwise than the
-  /// one before, or its peak if the onset is not known.
+  /// last before it that tells, or its peak if the onset is not known.
   Estimate transition_time;
   Estimate cycle_count;  ///< Falls that are slips.
-  /// Slips that ended in sticking. 0 in a regime that never sticks. Absent if undecided, if only the shape of
-  /// the cycles tells stick-slip, or if slips stuck but fewer than half of all tell how they ended. The last
-  /// never tells, but is taken for one that does in this rule.
+  /// Slips that ended in sticking, of those that tell how they ended. 0 in a regime that never sticks. Absent
+  /// if undecided, if only the shape of the cycles tells stick-slip, or if slips stuck but fewer than half of
+  /// all tell how they ended. The last never tells, but is taken for one that does in this rule.
   Estimate stick_cycle_count;
   Estimate period_median;          ///< s, from peak to peak.
   Estimate oscillation_frequency;  ///< Hz, cycles over time; ω/2π of a ring-down with a fit.
@@ -75,7 +75,7 @@ struct TestResults {
   Estimate kinetic_coefficient;    ///< Traditional, by the method.
   Estimate mu_s;       ///< S of the model, by `rung`: mean over the slips, as a rule without the first.
   Estimate mu_k;       ///< K of the model, by `rung`: mean over the slips, as a rule without the first.
-  Estimate delta_mu;   ///< S − K.
+  Estimate delta_mu;   ///< S − K; half of its bound where it is not told from 0: tell_bound().
   Estimate amplitude;  ///< Half the mean range of the oscillation, coefficient.
   Estimate gamma_over_2omega;
   Estimate omega;  ///< rad/s, damped.
@@ -88,9 +88,11 @@ struct TestResults {
   Estimate gap_count;
   Estimate lost_scan_count;
   Estimate scan_rate_measured;  ///< Hz, from clocks.
-  /// m/s, where the pull speed changes: that at the onset of the first slip that did not stick again.
+  /// m/s, where the pull speed changes, as in holds: that at the onset of the first slip that did not stick
+  /// again.
   Estimate escape_speed;
-  /// m/s, where the pull speed changes: threshold speed for the mean S − K, from slips whose end is known.
+  /// m/s, where the pull speed changes, as in holds: threshold speed for the mean S − K, from slips whose end
+  /// is known.
   Estimate escape_speed_corrected;
 
   // From features of the cycles that stick, core/analysis/cycle_features.

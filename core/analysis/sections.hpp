@@ -32,12 +32,14 @@ inline constexpr std::size_t kMostSlipsTogether = 1024;
 struct FittedSlip {
   std::size_t first = 0;
   std::size_t end = 0;
-  bool captured = false;  ///< Fitted as ending in sticking; true also if its end is not known.
+  /// Fitted as ending in sticking. An unknown end counts as sticking, but not of a slip that follows a free
+  /// one.
+  bool captured = false;
   model::SlipParameters slip;
   model::SharedParameters shared;
 };
 
-/// Combined estimates of all sections.
+/// Combined estimates of all sections; or those of estimates_from_live(), which says what it fills.
 struct TestEstimates {
   /// Only the results of model_results() and feature_results(). Means over sections, weighted by their slips;
   /// absent if one section has no value, and all if the means do not tell S from K (model_describes is then
@@ -45,9 +47,9 @@ struct TestEstimates {
   TestResults results;
   base::LongColumn<double> log_likelihood_ratios;  ///< Captured over free, one fewer than slips; 0: unknown.
   base::LongColumn<detect::Cycle> cycles;          ///< One for each slip, as from cycle_table().
-  base::LongColumn<double> onset_errors_s;         ///< Standard error of each onset; NaN if unknown.
-  /// One for each onset from sticking, without sections whose fit did not converge; empty unless
-  /// settings.keep_fitted.
+  base::LongColumn<double> onset_errors_s;  ///< One for each slip: standard error of its onset; NaN: unknown.
+  /// One for each onset from sticking, without slips that have no window (SlipEstimates::kNoWindow) and
+  /// sections whose fit did not converge. Empty unless settings.keep_fitted.
   base::LongColumn<FittedSlip> fitted;
   std::int64_t captured = 0;  ///< Slips that ended in sticking.
   /// The model describes each section, S is not clearly below K, and, if slips stick, S − K exceeds its
@@ -59,8 +61,8 @@ struct TestEstimates {
   /// The tester's parameters by the fits of all sections, the prior included; nullopt if the fit of a section
   /// did not converge.
   std::optional<TesterEstimate> tester;
-  /// The estimates of a test of one section, and the prior with which it was fitted; null of several, and
-  /// unless settings.keep_section.
+  /// The estimates of a test of one section, and the prior with which it was fitted. Null of several, if the
+  /// fit did not converge, and unless settings.keep_section.
   std::shared_ptr<const SlipEstimates> section;
   estimate::SharedPrior prior;
 };

@@ -15,7 +15,8 @@
 
 namespace stickslip::analysis {
 
-/// What check_signal() finds; each member is absent if it is not found.
+/// What check_signal() finds; each member is absent if it is not found. Of a highest value that is both
+/// clipped and frozen only one is set.
 struct SignalCheck {
   std::optional<signal::HeldValues> clipped;  ///< The highest level, where scans stay too often.
   std::optional<signal::HeldValues> frozen;   ///< The value that stood still.

@@ -17,7 +17,8 @@ namespace stickslip::analysis {
 /// Each flag that is true switches one correction off.
 struct SkippedCorrections {
   bool spikes = false;  ///< Spikes stay in the trace; otherwise they are replaced, and fits leave them out.
-  bool drift = false;   ///< Drift stays; otherwise, at constant pull speed, a significant one is subtracted.
+  /// Fits keep the drift; otherwise, at constant pull speed, they subtract a significant one.
+  bool drift = false;
   /// Means include the first slip and those after holds; otherwise only where there are too few others.
   bool first_slip = false;
 

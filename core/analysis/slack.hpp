@@ -44,7 +44,7 @@ struct Slack {
 /// \param why  the reason that they get.
 void void_slack_turns(const std::string& why, model::Regime regime, TestResults& results);
 
-/// Code kSlack.
+/// Finding kSlack; its text is why_slack() of the same counts.
 [[nodiscard]] base::Finding slack_finding(std::size_t slack_count, std::size_t slip_count);
 
 }  // namespace stickslip::analysis

@@ -34,15 +34,15 @@ struct SlipEstimates {
   estimate::Drift drift;                      ///< Drift of the trace; fitted S and K are without it.
   std::vector<SlipEnd> ends;                  ///< One for each slip.
   std::vector<double> log_likelihood_ratios;  ///< Captured over free, one fewer than slips; 0 if unknown.
-  std::vector<estimate::SlipWindow> windows;  ///< One for each onset from sticking.
+  std::vector<estimate::SlipWindow> windows;  ///< One for each onset from sticking but those with kNoWindow.
   std::vector<std::size_t> window_of_slip;    ///< Index into `windows` for each slip, or kNoWindow.
   estimate::SlipFit fit;
   model::SharedParameters guess;  ///< By turning points and slopes: where the first try began.
   /// Fit of one S and one K to all slips but the first (with it if first_counts). Nullopt if the slips differ
-  /// by more than noise, one ended in kFree, they are fewer than three with the first, `belt` is not
-  /// constant, no periodic stick-slip has their means, or a fit did not converge.
+  /// by more than noise, a window is not SlipWindow::captured, there are fewer than three windows, `belt` is
+  /// not constant, no periodic stick-slip has their means, or a fit did not converge.
   std::optional<estimate::UniformFit> uniform;
-  model::BeltMotion belt;     ///< Belt speed over the time of the trace.
+  model::BeltMotion belt;     ///< Trace::belt: relative speed; constant unless a change of it is known.
   bool first_counts = false;  ///< Means include the first slip and those after a hold.
 
   [[nodiscard]] bool has_window(std::size_t slip) const noexcept { return window_of_slip[slip] != kNoWindow; }

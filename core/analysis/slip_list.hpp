@@ -10,7 +10,8 @@
 namespace stickslip::analysis {
 
 /// Falls that are slips: `falls`, already selected one by one by detect::SlipRule, without
-/// 1. falls at the beginning with a peak below a quarter of the usual load, as two spikes at rest make;
+/// 1. falls at the beginning with a peak below a quarter of the usual load, as two spikes at rest make; but
+///    not the first slips of a trace that begins in mid-test;
 /// 2. falls at either end down to the unloaded level while the other slips end above it, as the unloading;
 /// 3. falls at the end, in the hold after a pull, where the force does not climb;
 /// 4. falls whose duration is much less than the median one, as steps between spikes make.

@@ -16,7 +16,8 @@ namespace stickslip::analysis {
 /// Index of the pull that a slip belongs to, by the speed of Trace::belt, planned or measured; 0 if that is
 /// constant.
 [[nodiscard]] std::size_t pull_of(const estimate::Trace& trace, const detect::Fall& slip);
-/// Whether slip i is the first of the test, or the first after a stop of the belt.
+/// Whether slip i is the first of `slips`, or lies in another pull than the slip before: the belt stopped or
+/// went back between them.
 [[nodiscard]] bool begins_a_pull(const estimate::Trace& trace, std::span<const detect::Fall> slips,
                                  std::size_t i);
 /// Whether two slips lie in different pulls and the belt only stood still before the later one; false if the

@@ -32,8 +32,8 @@ struct Taps {
 };
 
 /// Finds the taps in equally spaced readings, and fits one decaying oscillation about a level to what follows
-/// each. The fit begins after the tap as soon as its residuals are noise. Taps less than 0.15 s apart are
-/// one. Of more than 4000 readings a second neighbours are averaged.
+/// each. The fit begins after the tap, once its residuals are noise. Taps with no more than 0.15 s of quiet
+/// between them are one. From 8000 readings a second on neighbours are averaged, to 4000 a second at least.
 /// \param readings  in any unit; finite; without gaps.
 /// \param scan_rate_Hz > 0. A cell above half of it seems to oscillate at another frequency below
 ///        (alias_Hz()).

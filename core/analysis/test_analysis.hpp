@@ -33,9 +33,10 @@
 
 namespace stickslip::analysis {
 
-/// The analysis of one test. Thread-bound. Memory grows with the test by about 34 bytes a scan and 0.4 kB a
-/// slip. With a scratch folder it grows by 16 bytes a spike, 24 bytes a gap and 8 bytes for 64 scans (and by
-/// the slips where the pull speed changes), and functions may throw std::system_error.
+/// The analysis of one test. Thread-bound. Memory grows with the test by about 34 bytes a scan, 8 more with
+/// speed(), and 0.4 kB a slip; finish() needs more for a while where it takes a transducer off. With a
+/// scratch folder memory grows by 16 bytes a spike, 24 bytes a gap and 8 bytes for 64 scans (and by the slips
+/// where the pull speed changes), and functions may throw std::system_error.
 class TestAnalysis {
  public:
   /// \throws std::invalid_argument unless the rate is positive and finite.
@@ -71,8 +72,8 @@ class TestAnalysis {
   /// and zero are absent: core/pipeline adds them.
   [[nodiscard]] TestResults finish();
 
-  /// After finish(): one cycle for each slip; empty if there is none. Cycle::delta_mu is NaN for slips that
-  /// ended in slack, and for all if the results have no S − K.
+  /// After finish(): one cycle for each slip; empty if there is none. Cycle::delta_mu is also NaN for slips
+  /// that ended in slack, and for all if the results have no S − K.
   [[nodiscard]] const base::LongColumn<detect::Cycle>& cycles() const noexcept { return cycles_; }
   /// Moves the cycles out.
   [[nodiscard]] base::LongColumn<detect::Cycle> take_cycles() { return std::exchange(cycles_, {}); }

@@ -8,8 +8,8 @@
 
 namespace stickslip::analysis {
 
-/// Means of S, K and S − K over cycles, in fixed memory. A cycle with kCycleIsFirst, often not representative
-/// [Penner 1995], is left out if others follow, unless first_counts.
+/// Means of S, K and S − K over cycles, in fixed memory. Those with kCycleIsFirst at the beginning, often not
+/// representative [Penner 1995], are left out if others follow, unless first_counts.
 class TierMeans {
  public:
   explicit TierMeans(bool first_counts = false) noexcept : leaves_out_first_(!first_counts) {}
@@ -22,7 +22,7 @@ class TierMeans {
   /// three. Standard errors follow from the scatter of the cycles, of which neighbours are correlated; one
   /// cycle has none. The systematic uncertainty is the whole correction for belt and damping: no fit has
   /// shown that the closed forms hold. An S − K that is not above zero is replaced by half of that
-  /// correction, as by tell_bound(), and Q and threshold_speed become absent.
+  /// correction, unless that is 0, as by tell_bound(), and Q and threshold_speed become absent.
   void fill(TestResults& results) const;
 
  private:

@@ -52,7 +52,8 @@ class ThroughTransducer {
   /// How much more estimate() scatters than fit(), of each result and at least 1, over traces of the first
   /// slips found with noise; the random stream is always the same. The transducer hides a part of the slips.
   /// \param found  of estimate(). \param sigma  noise of a scan. \param fit  of a trace that may end after
-  /// kMostSlipsOfErrors slips. \return nullopt if estimate() seldom settles with other noise.
+  /// kMostSlipsOfErrors slips. \return nullopt unless estimate() settles, and the fits describe the trace,
+  /// with at least 8 of 12 other noises.
   [[nodiscard]] std::optional<ErrorFactors> error_factors(const estimate::Trace& whole,
                                                           const TestEstimates& found, double sigma,
                                                           const Fit& fit) const;

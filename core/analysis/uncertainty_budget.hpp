@@ -36,7 +36,7 @@ struct BudgetFacts {
 /// How a source enters a budget.
 enum class BudgetState {
   kCounted,   ///< Its variance is a part of u².
-  kIncluded,  ///< Another line counts it; the note says which.
+  kIncluded,  ///< Is a part of another line; the note says of which.
   kNone,      ///< Does not affect this quantity, or is known to be 0; the note says why.
   kUnknown,   ///< The note says what to do. The combined uncertainty lacks it.
 };

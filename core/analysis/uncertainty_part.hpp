@@ -22,7 +22,7 @@ enum class UncertaintySource : std::uint8_t {
   kZero,         ///< Reading of the unloaded load cell.
   kClock,        ///< Quartz of the computer.
   kDamping,      ///< Whether the damper's force counts at the onset; a damping that is held.
-  kCreep,        ///< Creep of the contact before the slips, where none of the test ends in sticking.
+  kCreep,        ///< Creep of the contact before the slips, where none of a section ends in sticking.
   kMisfit,       ///< What differs from the fit alike in each slip.
   kRung,  ///< Distance to the result of another rung or of the slips' own fits, or from K to the mean force.
   kCorrection,  ///< By turning points: the whole correction for belt and damping.

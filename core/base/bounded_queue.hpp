@@ -22,7 +22,8 @@ class BoundedQueue {
   explicit BoundedQueue(std::size_t capacity)
       : queue_(capacity), free_slots_(static_cast<unsigned>(capacity)) {}
 
-  /// Producer only. Appends an item, which the consumer sees at once. Blocks until the queue has room.
+  /// Producer only. Appends an item. The consumer sees it at once, with those put before. Blocks until
+  /// the queue has room.
   void push(const T& item) {
     put(item);
     announce();

@@ -52,7 +52,8 @@ struct ChildProgram {
 };
 
 /// Main loop of a ChildProgram. Standard input is a socket, from which it reads questions and to which it
-/// writes the answers; standard output is the memory file. The process ends when its parent ends.
+/// writes the answers; standard output is the memory file. The process ends when its parent ends, or the
+/// thread of the parent that started it.
 [[noreturn]] void answer_questions(const ChildWork& work);
 
 /// Child process that starts at the first question and answers any number of them; if it has died, the next

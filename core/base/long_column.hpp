@@ -43,7 +43,7 @@ class LongColumn {
   static constexpr std::size_t kBlock = sizeof(T) <= sizeof(double)
                                             ? std::size_t{1} << 16U
                                             : std::bit_floor((std::size_t{1} << 15U) / sizeof(T));
-  static constexpr std::size_t kResident = 4;  ///< Blocks in memory if there is a folder.
+  static constexpr std::size_t kResident = 4;  ///< Most blocks in memory if there is a folder.
 
   template <bool kConst>
   class Iterator;

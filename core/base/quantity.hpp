@@ -83,7 +83,7 @@ struct EnteredQuantity {
 /// Unit in which parse_quantity() returns; "1" if dimensionless.
 [[nodiscard]] std::string_view si_unit(Dimension dimension) noexcept;
 
-/// "2.331 kg", "0.3": the shortest text that parse_quantity() reads back as the same value.
+/// "2.331 kg", "0.3": the fewest digits that parse_quantity() reads back as the same value.
 /// \param value  in SI units, finite.
 [[nodiscard]] std::string format_quantity(double value, Dimension dimension);
 

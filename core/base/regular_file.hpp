@@ -26,7 +26,7 @@ struct RegularFile {
 };
 
 /// Opens a regular file for reading. Errors, with the path: kUsage if it does not exist or is not a regular
-/// file, kFailure if the system refuses.
+/// file, kFailure if the system refuses, as it does for a socket.
 [[nodiscard]] Result<RegularFile> open_regular(const std::filesystem::path& path);
 
 /// As open_regular(), and also opens a pipe or a device that this process inherited open, if the path is

@@ -33,7 +33,7 @@ struct Error {
   /// long.
   bool worker_died = false;
 
-  /// Exit status for a command that ends with this error: 2 usage and input, 1 failure, 130 interrupted.
+  /// Exit status for a command that ends with this error: 2 usage and input, 130 interrupted, else 1.
   [[nodiscard]] int exit_status() const noexcept {
     switch (kind) {
       case ErrorKind::kUsage:

@@ -93,7 +93,8 @@ class Settings {
   /// A sub-table. An absent one is empty: its required keys are missing. A value that is no table is an
   /// error, and also gives an empty one.
   [[nodiscard]] Settings table(std::string_view key);
-  /// [[key]] tables in order; none if absent. A value that is no array of tables is an error, and gives none.
+  /// [[key]] tables in order; none if absent or []. Any other value that is no array of tables is an error,
+  /// and gives none.
   [[nodiscard]] std::vector<Settings> tables(std::string_view key);
 
   /// A number in SI units, written as a string with unit; a dimensionless one may be bare. Must be finite.

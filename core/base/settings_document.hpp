@@ -26,8 +26,8 @@ inline constexpr std::size_t kLongestParserMessage = 200;
   return parent.empty() ? std::string{key} : fmt::format("{}.{}", parent, key);
 }
 
-/// One table of the document, or the place of an absent one (`table` is null), with the keys that were asked
-/// for: finish() refuses all others.
+/// One table of the document, or the place of one that is absent or no table (`table` is null), with the keys
+/// that were asked for: finish() refuses all others.
 struct Settings::Node {
   const toml::table* table = nullptr;
   std::string path;        ///< Dotted, empty for the root.
@@ -47,7 +47,7 @@ struct Settings::Document {
   std::optional<Error> first_missing;
   /// Origins of the values and tables that set() added, by path.
   std::map<std::string, std::string, std::less<>> origins;
-  std::vector<std::string> changes;  ///< Origins of all calls of set() and remove(), in order.
+  std::vector<std::string> changes;  ///< Origins of the set() and remove() that succeeded, in order.
 
   /// "file:line" of the value, or the origin of the set() that wrote it or a table around it.
   [[nodiscard]] std::string place_of(std::string_view path, const toml::node& value) const;
@@ -64,7 +64,8 @@ struct Settings::Document {
   /// elsewhere may have caused the error.
   [[nodiscard]] Error error_at(std::string_view place, std::string_view what) const;
   [[nodiscard]] std::optional<Error> first_unknown(const Node& node) const;
-  /// Rewrites `text` after a change of the root. Usage error if the root cannot be written.
+  /// After a change of the root: adds the origin to `changes` and rewrites `text`. Usage error if the root
+  /// cannot be written; both then stay as they are.
   [[nodiscard]] Result<void> changed(std::string_view origin);
 };
 

@@ -30,11 +30,13 @@ enum class RawQuantity {
 
 /// Properties of the board in use: values that it granted, unless the name says requested.
 struct BoardInfo {
-  std::string driver;      ///< "comedi", "simulated", "replay"; in the record of an imported trace "import".
-  std::string board_name;  ///< Name reported by the board.
-  std::string device;      ///< Path or scene or file; for people.
-  std::string serial;      ///< Serial number; empty: none. Not recorded.
-  std::string bus_path;    ///< Where it is plugged in, as udev's ID_PATH; empty: nowhere. Not recorded.
+  std::string driver;  ///< "comedi", "simulated", "replay"; in the record of an imported trace "import".
+  /// Name reported by the board; of a Comedi board followed by its driver in parentheses.
+  std::string board_name;
+  std::string device;  ///< Path or scene or file; for people.
+  std::string serial;  ///< Serial number; empty: none. Not recorded.
+  /// Where it is plugged in: as udev's ID_PATH, or its path in sysfs; empty: unknown. Not recorded.
+  std::string bus_path;
   int subdevice = 0;
   int channel = 0;
   RawQuantity quantity = RawQuantity::kCounts;
@@ -53,19 +55,21 @@ struct BoardInfo {
   /// "command" (the board's own timer) or "polled" (one reading at a time, timed by this computer); empty:
   /// unknown.
   std::string acquisition;
-  std::string notes;  ///< Requested settings that the board changed or does not have; for the log.
+  std::string notes;  ///< Settings that the board changed or does not have; for people. Not recorded.
   std::optional<SecondChannel> second;  ///< Second channel, read in each scan; only if quantity is kCounts.
 };
 
 /// How a read ended.
 enum class ReadStatus {
-  kScans,         ///< The block holds at least one scan.
-  kTimeout,       ///< No scan arrived in time; also before start() and after stop(), unless kBoardMissing.
-  kEndOfInput,    ///< There will be no more scans (end of a replay or a simulation). Repeats.
+  kScans,  ///< The block holds at least one scan.
+  /// No scan arrived in time. Also before start(), after stop() and after a status that is reported once,
+  /// until start(); but a missing board gives kBoardMissing.
+  kTimeout,
+  kEndOfInput,    ///< There will be no more scans (end of a replay or a simulation). Repeats until stop().
   kOverrun,       ///< The board lost scans and halted; start() again. Reported once.
   kSuspended,     ///< The computer was suspended, and scans were lost; start() again. Reported once.
   kBoardMissing,  ///< The board is gone or silent; only a new board object can bring it back. Repeats.
-  kFailed,        ///< Any other error; last_error() says which. stop() and start() again.
+  kFailed,        ///< Any other error; last_error() says which. stop() and start() again. Reported once.
 };
 
 /// One analog input, and a second one if info() has one, acquiring scans at a fixed rate.

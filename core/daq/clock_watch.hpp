@@ -17,8 +17,8 @@ class ClockWatch {
   /// Delay of a read above which it counts as a stall: a virtual machine was paused, a debugger stopped the
   /// program, or the processor was not available.
   static constexpr double kStall_ns = 1e9;
-  /// Change of the date relative to the monotonic clock above which it counts as a step; NTP slews by
-  /// 0.5 ms/s. A suspend is no step, since both clocks go on.
+  /// Change of the date relative to the monotonic clock, since the block before, above which it counts as a
+  /// step; NTP slews by 0.5 ms/s. A suspend is no step, since both clocks go on.
   static constexpr std::int64_t kStep_ns = 1'000'000'000;
 
   /// Events found at one block.
@@ -28,7 +28,7 @@ class ClockWatch {
   };
 
   /// Takes the stamp of the next block. A stall is reported once, at its first late block, and lasts until
-  /// the delay is at most half of kStall_ns. A step is reported at the second block that shows it.
+  /// the delay is at most half of kStall_ns. A step is reported at the second block in a row that shows it.
   /// \param late_ns  delay of the block's read, ns; nullopt if unknown, which counts as no delay.
   [[nodiscard]] News observe(const ClockStamp& stamp, std::optional<double> late_ns) noexcept {
     News news;

@@ -16,7 +16,7 @@ enum class GapCause {
   kUnknown,       ///< The index jumped without a report.
   kOverrun,       ///< The board's buffer overflowed, and the board halted.
   kRingFull,      ///< The processing thread was too slow: the ring dropped whole blocks.
-  kBoardMissing,  ///< The board was gone (unplugged or silent) and was opened again.
+  kBoardMissing,  ///< The board was gone (unplugged or silent) or failed, and was opened again.
   kSuspended,     ///< The computer was suspended.
   kMissingScans,  ///< An imported trace has no rows for these scans.
   kStorageFull,   ///< The scans arrived; writing failed for longer than memory could hold them.

@@ -21,7 +21,7 @@ struct LoadPoint {
   bool saturated = false;  ///< At a rail of the converter; ignored.
 };
 
-/// Result of fit_load_cell().
+/// Result of fit_load_cell(). If there is no load cell, only used and reason are set.
 struct LoadCellFit {
   std::optional<LoadCell> load_cell;                  ///< Nullopt: see reason.
   std::optional<double> gain_standard_error_N_per_V;  ///< From three points on.

@@ -19,7 +19,7 @@ struct Continuation {
   /// One past the last scan that the board delivered; after RateMeter::started(), until a scan comes, the
   /// index of the first one due.
   ScanIndex end = 0;
-  ClockAnchor anchor;       ///< A scan whose time is known.
+  ClockAnchor anchor;       ///< A scan whose monotonic time is known; realtime_ns may be 0.
   double scan_rate_Hz = 0;  ///< Measured if known to 100 ppm, else granted.
 };
 

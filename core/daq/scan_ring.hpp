@@ -22,7 +22,7 @@ class ScanRing {
 
   /// Capacity in blocks that holds `bridge_s` seconds, for reads that deliver a short block every 5 ms
   /// (Comedi at 250 Hz: every 8 ms) as well as full blocks. A board that delivers each scan singly fills it
-  /// sooner above 200 scans/s.
+  /// sooner above 203 scans/s.
   [[nodiscard]] static std::size_t capacity_for(double scan_rate_Hz, double bridge_s = 60.0) {
     constexpr double kReadsPerSecond = 200.0;
     const double full_blocks_per_second = scan_rate_Hz / static_cast<double>(ScanBlock::kMaxScans);

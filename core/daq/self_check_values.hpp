@@ -16,7 +16,7 @@ namespace stickslip::daq {
 struct SelfCheck {
   base::ScanIndex first_scan = 0;
   std::vector<double> raw;       ///< Raw readings of these scans; the members below follow from them.
-  std::optional<double> zero_N;  ///< Mean force.
+  std::optional<double> zero_N;  ///< Mean force, without spikes and hum.
   std::optional<double> zero_standard_error_N;
   std::optional<double> drift_N_per_s;
   std::optional<double> drift_standard_error_N_per_s;

@@ -15,7 +15,7 @@
 
 namespace stickslip::daq {
 
-/// Reading under one weight.
+/// Reading under one weight. An absent standard error or wander counts as 0 in weigh().
 struct WeightReading {
   double mass_kg = 0.0;                    ///< 0: no weight (the tare).
   double voltage_V = 0.0;                  ///< Mean.
@@ -41,7 +41,9 @@ struct WeighedPoint {
 
 /// Result of weigh().
 struct WeighedCalibration {
-  LoadCellFit fit;  ///< Fit of the accepted readings; without load cell if weigh() finds a fault.
+  /// Fit of the accepted readings. If weigh() finds a fault it has no load cell, but its standard errors,
+  /// residual and hysteresis may be set.
+  LoadCellFit fit;
   std::vector<WeighedPoint> points;  ///< In the order of the readings.
   /// Standard deviation about the line, and hysteresis, above 0.2 % of the largest difference of an
   /// unsaturated reading from the tare; none without a load cell.

@@ -32,7 +32,9 @@ struct Cycle {
   double onset_time_s = 0.0;    ///< Slip onset; NaN if the slip did not begin from sticking, or if unknown.
   double capture_time_s = 0.0;  ///< Slip ends in sticking; NaN if not, or if unknown.
   double peak_time_s = 0.0;     ///< Maximum of the force, interpolated between scans.
-  double period_s = 0.0;        ///< Peak to next peak; NaN if none; after the test also before a break.
+  /// Peak to next peak; NaN if none. While the test runs also NaN if the ring-down died away; after the test
+  /// also before a break.
+  double period_s = 0.0;
   /// From the capture before (or rest in a hold) to this onset; after a hold, if the onset is unknown and no
   /// fit describes the test, to the peak.
   double stick_time_s = 0.0;

@@ -23,9 +23,10 @@ struct Fall {
   /// signal::kMostSteps scans it may be too large by 0.2 % of the time from peak to trough. 0 if the first
   /// below comes before the last above.
   double duration = 0.0;
-  /// Scans from the minimum before to the peak; 0 if the trace begins at the peak.
+  /// Scans from the minimum before to the peak. 0 if the trace begins at the peak, or has not risen to it by
+  /// more than the hysteresis.
   double rise_duration = 0.0;
-  double rise_from = 0.0;  ///< Median of three at that minimum; at the peak if the trace begins there.
+  double rise_from = 0.0;  ///< Median of three at that minimum; at the peak if rise_duration is 0.
 
   double robust_drop = 0.0;  ///< Drop of the median of three, which noise hardly affects.
 

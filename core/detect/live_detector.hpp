@@ -65,7 +65,7 @@ class LiveDetector {
   /// first scan added, without missing scans.
   [[nodiscard]] const std::optional<FallBegun>& fall_begun() const noexcept { return fall_begun_; }
   /// The slip under way with its present estimates; null if there is none. Valid until the next add(), gap()
-  /// or end(). Number, first_scan and flags of its scans are set when the cycle closes.
+  /// or end(). Number, period_s, first_scan and flags of its scans are set when the cycle closes.
   [[nodiscard]] const LiveCycle* under_way() const noexcept {
     return follower_.is_open() ? &follower_.slip() : nullptr;
   }

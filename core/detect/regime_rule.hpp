@@ -51,7 +51,7 @@ enum class Description {
                                          const base::LongColumn<double>& log_likelihood_ratios,
                                          Description description);
 
-/// What the cycles of a test look like, without any model.
+/// What the cycles of a test look like, without any model. With fewer than three cycles only count is set.
 struct CycleShape {
   std::size_t count = 0;        ///< Cycles with a rise after the fall.
   double rise_over_fall = 0.0;  ///< Median: time from trough to next peak over time from peak to trough.

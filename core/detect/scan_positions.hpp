@@ -20,7 +20,7 @@ class ScanPositions {
   [[nodiscard]] std::int64_t count_come() const noexcept { return come_; }
   [[nodiscard]] std::int64_t count_followed() const noexcept { return followed_; }
 
-  /// No scan after the last gap was followed yet.
+  /// There was a gap, and no scan after the last one was followed yet.
   [[nodiscard]] bool is_gap_to_come() const noexcept { return followed_ <= gap_at_ && lost_ > lost_before_; }
   /// The scan to be followed next is the first behind the last gap.
   [[nodiscard]] bool is_at_gap() const noexcept { return followed_ == gap_at_ && is_gap_to_come(); }

@@ -17,8 +17,9 @@
 
 namespace stickslip::detect {
 
-/// Follows one slip at a time. step() does at most one task, a test or a fit of up to 256 points, for each
-/// scan; force() does all that remain. Fixed memory; never allocates.
+/// Follows one slip at a time. step() does at most one task for each scan: a test or a fit of up to 256
+/// points, or two of them if the belt's speed may have changed. force() does those that remain. Fixed memory;
+/// never allocates.
 class SlipFollower {
  public:
   /// \param scan_rate_Hz > 0.
@@ -46,7 +47,7 @@ class SlipFollower {
   [[nodiscard]] bool step(double now_s, double sigma) noexcept {
     return state_ > State::kDone && !(now_s < now_.next_task_s) && do_task(now_s, sigma);
   }
-  /// Does all remaining tasks with the available scans.
+  /// Does the remaining tasks with the available scans, but no fit of ω, γ and r before the first test.
   /// \param has_next  a slip follows: then the end is decided without kDecisive, as captured if that is
   ///        likelier, as free at kDecisiveLikelihoodRatio.
   /// \return true if this decided how the slip ends.
@@ -62,8 +63,9 @@ class SlipFollower {
   [[nodiscard]] const LiveCycle& slip() const noexcept { return slip_; }
   /// Mutable, so that the caller can set values that it knows better.
   [[nodiscard]] LiveCycle& slip() noexcept { return slip_; }
-  /// Estimates of ω, γ and r in use for the slip begun last: its own fit counts from the next open() on. Not
-  /// before the first open().
+  /// Estimates of ω, γ and r in use for the slip begun last. A fit of its scans up to the trough changes them
+  /// at once, and so does a belt speed that changed. The fit after the decision counts from the next open()
+  /// on. Not before the first open().
   [[nodiscard]] const model::SharedParameters& shared() const noexcept { return now_.shared; }
 
  private:

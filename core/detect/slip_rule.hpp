@@ -10,9 +10,9 @@ namespace stickslip::detect {
 
 /// A slip is a fall that is significant against the measured noise and fast relative to the rise before it,
 /// and the rise contains no fall of kLargestFallInStick of the drop or more. The rise begins at the trough of
-/// the last significant fall, or before the first one Fall::rise_duration before the peak. Limits are in
-/// standard deviations σ of the noise of one scan, in scans, or ratios; none depends on the scan rate or the
-/// file.
+/// the last significant fall. That before the first one takes Fall::rise_duration, but all falls of the trace
+/// so far count as falls inside it. Limits are in standard deviations σ of the noise of one scan, in scans,
+/// or ratios; none depends on the scan rate or the file.
 ///
 /// They were placed on measured traces of paper on paper: textbook saw-teeth have slips of 16 σ up that take
 /// at most 0.10 of the time of the rise before; a nearly sinusoidal trace has slips of 22 σ up that take at
@@ -26,8 +26,8 @@ class SlipRule {
   static constexpr double kHysteresisSigmas = 6.0;
   /// Smallest Fall::robust_drop of a slip in σ.
   static constexpr double kSignificantSigmas = 12.0;
-  /// Largest fall inside the rise, relative to the drop; with a larger one the sled was sliding, not
-  /// sticking.
+  /// Limit of the largest fall inside the rise, relative to the drop: with one of this size or more the sled
+  /// was sliding, not sticking.
   static constexpr double kLargestFallInStick = 1.0 / 3.0;
   /// Largest error of Fall::duration, in scans: each of the crossings of 90 % and 10 % is up to one scan
   /// inside the counted interval. A slip's duration less this must not exceed that of the rise; in the model

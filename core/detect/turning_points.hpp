@@ -27,7 +27,7 @@ struct TurningPoint {
 /// fast loading has few points, and one missed spike would change the slope by 10 %.
 /// \param sigma  noise of one scan.
 /// \return 1/s; nullopt without two points there at different times; the slope of the median line if half of
-/// the points or more are off it by more than estimate::kStraySigmas.
+/// the points or more are off it, or off the fit, by more than estimate::kStraySigmas.
 [[nodiscard]] std::optional<double> slope_between(std::span<const estimate::CyclePoint> points, double low,
                                                   double high, double sigma) noexcept;
 

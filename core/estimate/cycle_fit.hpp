@@ -26,7 +26,7 @@ struct CycleFit {
   /// Of (onset, S, K), including the uncertainty of ω, γ and r; larger if the residuals exceed noise.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   SharedEvidence evidence;  ///< Information about ω, γ and r from these scans alone, without the prior.
-  double capture_s = 0.0;   ///< After the onset; infinity if not captured.
+  double capture_s = 0.0;   ///< SlipModel::capture_s(), after the onset; infinity with captured = false.
   double residual_sigmas = 0.0;  ///< HuberSums::residual_sigma().
 
   [[nodiscard]] double delta_mu() const noexcept { return slip.S - slip.K; }
@@ -43,7 +43,7 @@ struct CycleFit {
 /// \param knowledge  prior of ω, γ and r, after its start().
 /// \param sigma   noise of one scan, > 0.
 /// \return converged = false with fewer than four points, if the first guess is not admissible (as in
-/// fit_slips()), if the fit does not settle in 12 iterations, or if the points do not determine it.
+/// fit_slips()), if the fit does not settle in 12 iterations, or if points and prior do not determine it.
 [[nodiscard]] CycleFit fit_cycle(std::span<const CyclePoint> points, bool captured,
                                  const model::SlipParameters& start, const model::SharedParameters& shared,
                                  const SharedPosterior& knowledge, double sigma) noexcept;

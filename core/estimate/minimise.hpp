@@ -16,8 +16,8 @@ namespace stickslip::estimate {
 
 struct MinimiserLimits {
   int iterations = 0;
-  /// Change of the cost below which the fit has converged: absolute + relative · cost. In units of
-  /// log-likelihood: a parameter then moves by √(2 · this) of its standard error.
+  /// Largest change of the cost, up or down, with which the fit has converged: absolute + relative · cost. In
+  /// units of log-likelihood: a parameter then moves by √(2 · this) of its standard error.
   double absolute = 0.0;
   double relative = 0.0;
 };
@@ -32,7 +32,7 @@ struct MinimiserLimits {
 ///     solved.
 /// \param state,equations  first guess and its equations; become those of the least cost found.
 /// \return whether it converged. It does not if the cost of the first guess is not finite, the iterations run
-/// out, or every step, however damped, raises the cost or cannot be solved for.
+/// out, or every step, however damped, raises the cost by more than the limit or cannot be solved for.
 template <typename Problem>
 bool minimise(const Problem& problem, typename Problem::State& state, typename Problem::Equations& equations,
               const MinimiserLimits& limits) {

@@ -29,8 +29,9 @@ class SharedPosterior {
   /// model::kTypicalGammaOver2Omega.
   /// \param omega  rad/s, > 0. \param stick_rate_per_s > 0.
   void start(double omega, double stick_rate_per_s);
-  /// Adds the information of one cycle and fades that of earlier ones. Ignores evidence that is not finite.
-  /// best() stays as it is if the new one would not have ω > 0, r > 0 and |γ| < 2ω.
+  /// Adds the information of one cycle and fades that of earlier ones and of start()'s first estimate.
+  /// Ignores evidence that is not finite. best() stays as it is if the new one would not have ω > 0, r > 0
+  /// and |γ| < 2ω.
   void learn(const SharedEvidence& evidence);
   /// Restarts the estimate of r after a change of the belt's speed. Keeps what was learnt of ω and γ, and the
   /// prior: one of the pull speed still holds r near the former speed.

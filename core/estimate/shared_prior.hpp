@@ -12,14 +12,14 @@ namespace stickslip::estimate {
 
 /// Terms of the prior in a fit's normal equations, in the order (ω, γ, r).
 struct PriorTerms {
-  double cost = 0.0;  ///< Half the sum of squares over variances.
+  double cost = 0.0;  ///< Half the sum of squares over variances; of SharedPosterior but for a constant.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  ///< Negative gradient of the cost.
 };
 
 /// Gaussian prior of ω, γ and r; empty if nothing is known.
 struct SharedPrior {
-  /// Prior of ω and γ/2ω from a characterisation of the tester.
+  /// Prior of ω and γ/2ω from a characterisation of the tester, or of a damping that is held.
   struct Coupling {
     double omega = 0.0;  ///< rad/s, damped.
     double gamma_over_2omega = 0.0;

@@ -22,7 +22,8 @@
 
 namespace stickslip::estimate {
 
-/// Scans [first, end) of the trace that belong to one slip, with its parameters.
+/// Scans [first, end) of the trace that belong to one slip from sticking and to the swings that follow it
+/// without a stick; with the slip's parameters.
 struct SlipWindow {
   std::size_t first = 0;
   std::size_t end = 0;
@@ -72,7 +73,7 @@ inline constexpr double kFitSettled = 1e-5;
 /// \param prior  of the shared parameters.
 /// \param settled  The fit has converged when a step changes the cost by at most this plus 1e-10 of it.
 /// \return converged = false without windows; if the first guess is not admissible: ω > 0, r > 0, |γ| < 2ω,
-/// S − K ≥ −6σ; if the fit does not settle in 60 iterations, 200 with a prior; or if the scans do not
+/// S − K ≥ −6σ; if the fit does not settle in 60 iterations, 200 with a prior; or if scans and prior do not
 /// determine the parameters.
 [[nodiscard]] SlipFit fit_slips(const Trace& trace, std::vector<SlipWindow>& windows,
                                 const model::SharedParameters& shared, double sigma,

@@ -23,7 +23,8 @@ class SlipSums {
 
   /// Adds a scan.
   /// \param at  its model::SlipModel::place().
-  /// \param residual  scan less at.value.
+  /// \param residual  scan less model, in any unit. The model is at.value; for the mean of several scans a
+  ///        caller adds the effect of the curvature.
   void add(const model::SlipPlace& at, double weight, double residual) noexcept {
     const double off = weight * residual;
     if (at.phase != model::SlipPhase::kSlip) {

@@ -24,7 +24,8 @@ struct Drift {
 /// Scans of one test: columns of equal length, in the order of time.
 struct Trace {
   base::LongColumn<double> time_s;  ///< (scan index − first index of the record) / granted rate.
-  base::LongColumn<double> value;   ///< Coefficient; a spike is replaced by what its neighbours have there.
+  /// Coefficient. A spike is replaced by what its neighbours have there, unless the analysis keeps spikes.
+  base::LongColumn<double> value;
   /// 0 for a spike or a scan that is saturated, clipped or frozen; fits leave it out.
   base::LongColumn<std::uint8_t> usable;
 

@@ -29,8 +29,8 @@ struct UniformFit {
 /// \param guess  first guess; UniformTrajectory::make() must accept it.
 /// \param sigma  noise of one scan, > 0.
 /// \param prior  of ω, γ and stick rate.
-/// \return converged = false if the fit does not settle in 60 iterations, or if the scans do not determine
-/// the parameters.
+/// \return converged = false if the fit does not settle in 60 iterations, or if scans and prior do not
+/// determine the parameters.
 [[nodiscard]] UniformFit fit_uniform(const Trace& trace, std::size_t first, std::size_t end,
                                      const model::UniformParameters& guess, double sigma,
                                      const SharedPrior& prior);

@@ -19,7 +19,7 @@ inline constexpr double kScatterLevel = 0.01;
 /// compares it with the fit slip by slip, by an F test on the robust costs, 3n + 3 parameters for n slips
 /// against 6 [Hampel et al., Robust Statistics, 1986, section 7.2].
 /// \param trace  of a belt of constant speed.
-/// \param windows,shared  fitted by fit_slips() to the whole test.
+/// \param windows,shared  fitted by fit_slips() to the whole test, or to a section of a long one.
 /// \param sigma  noise of one scan, > 0.
 /// \param first_counts  the first slip is fitted too.
 /// \return the fit of one S and one K; nullopt if a window is not SlipWindow::captured, there are fewer than

@@ -32,7 +32,8 @@ class BeltMotion {
   /// Whether the belt only pulls at one speed, rests, starts and stops, and its starts and stops take at most
   /// a tenth of the time at that speed until the end of the trace. True if is_constant().
   [[nodiscard]] bool has_one_speed() const noexcept { return has_one_speed_; }
-  /// The speed, planned or measured, over the time since start_s(). Requires !is_constant().
+  /// The speed as planned, as measured, or with the holds found, over the time since start_s(). Requires
+  /// !is_constant().
   [[nodiscard]] const PullSpeed& plan() const noexcept { return *plan_; }
   [[nodiscard]] double start_s() const noexcept { return start_s_; }
 

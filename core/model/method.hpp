@@ -18,7 +18,8 @@ struct Nominal {
   bool operator==(const Nominal&) const = default;
 };
 
-/// Interval of belt travel, counted from the first peak of the force; 0 ≤ from < to.
+/// Interval of belt travel at the nominal pull speed; 0 ≤ from < to. It counts from the peak of the first
+/// slip; without a slip, from the first scan of at least half the largest coefficient.
 struct TravelWindow {
   double from_m = 0.0;
   double to_m = 0.0;

@@ -27,14 +27,14 @@ struct SpeedPoint {
 
 class PullSpeed {
  public:
-  /// Longest interval of time after the start in which the belt pulls, v > 0. A speed of 0 at one instant
-  /// does not end it.
+  /// Maximal interval of time after the start in which the belt pulls, v > 0: it begins and ends where the
+  /// belt rests or returns. A speed of 0 at one instant does not end it.
   struct Pull {
     double start_s = 0.0;
     double end_s = 0.0;  ///< Infinity if it never stops.
   };
 
-  /// Most points that a plan may have.
+  /// Most points that a plan or a measured course may have.
   static constexpr std::size_t kMostPoints = 100'000;
 
   /// \param points  the first at 0 s, times not falling; two points at one time are a jump. The belt is at

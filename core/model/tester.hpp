@@ -21,8 +21,8 @@ struct Tester {
   double gravity_m_per_s2 = kStandardGravity_m_per_s2;
   std::optional<double> pull_speed_m_per_s;  ///< Nominal; nullopt if unknown.
   std::optional<double> stiffness_N_per_m;   ///< Of the coupling; nullopt if unknown.
-  /// Pull speed over time, as planned; nullopt: that of the method, else constant. What a speed channel
-  /// measures counts before it.
+  /// Pull speed over time, as planned; nullopt: that of the method, else constant but for holds that are
+  /// found. What a speed channel measures counts before it.
   std::optional<PullSpeed> speed_course;
   Transducer transducer;  ///< Ideal if unknown.
 

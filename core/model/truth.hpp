@@ -97,7 +97,8 @@ class TruthSource {
  public:
   virtual ~TruthSource() = default;
 
-  /// The truth about scans [first, end), with times in seconds after `first`; nullopt if unknown.
+  /// The truth about scans [first, end), with times in seconds after `first`; nullopt if unknown. Members
+  /// other than modes and cycles are those of the whole run of the scene.
   [[nodiscard]] virtual std::optional<TestTruth> truth(base::ScanIndex first, base::ScanIndex end) const = 0;
 
   /// The noise-free force from scan `first` on; null if unknown.

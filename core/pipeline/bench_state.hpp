@@ -17,19 +17,21 @@ namespace stickslip::pipeline {
 enum class BenchState {
   kIdle,       ///< Scans arrive; only a command begins a test.
   kArmed,      ///< The force or a command begins a test.
-  kLoading,    ///< A test runs and no slip has been seen.
-  kRunning,    ///< A test runs, and at least one slip has been seen.
+  kLoading,    ///< A test runs, or begins with the next scan; the force has not fallen.
+  kRunning,    ///< A test runs, and the force has fallen; the fall may prove to be no slip.
   kFinishing,  ///< The test is over; the force has not returned to the unloaded level.
   kDegraded,   ///< No scans arrive: the board is missing, busy, or not started.
 };
 inline constexpr std::size_t kBenchStates = 6;
 
-/// Idle or armed: no test runs, and no force of the last one is left. False if degraded.
+/// Idle or armed: no test runs, and the bench does not wait for the force of the last one to end. False if
+/// degraded.
 [[nodiscard]] constexpr bool rests(BenchState state) noexcept {
   return state == BenchState::kIdle || state == BenchState::kArmed;
 }
 
-/// Why the bench stays in a state; reported from its detection until the state changes.
+/// Why the bench stays in a state; reported from its detection until another is detected or the state
+/// changes.
 enum class BenchTrouble {
   kNone,
   kLongFinishing,  ///< For longer than a carriage takes to go back.
@@ -62,7 +64,7 @@ enum class BenchEvent {
   kForceRose,   ///< It stayed above the trigger.
   kSlipped,     ///< The force fell for the first time.
   kForceEnded,  ///< The rule for the end of a test holds.
-  kUnloaded,    ///< No force is left of the last test.
+  kUnloaded,    ///< No force is left of the last test, or somebody tared.
   // Faults.
   kBoardLost,  ///< No more scans.
   kBoardBack,  ///< Scans arrive again, or for the first time.
@@ -83,7 +85,7 @@ inline constexpr BenchEvent kFirstNoCommand = BenchEvent::kForceRose;
   return kNames[static_cast<std::size_t>(event)];
 }
 
-/// A test is being recorded.
+/// A test is being recorded, or begins with the next scan.
 [[nodiscard]] constexpr bool test_runs(BenchState state) noexcept {
   return state == BenchState::kLoading || state == BenchState::kRunning;
 }

@@ -10,7 +10,7 @@
 
 namespace stickslip::pipeline {
 
-/// Outcome of a command.
+/// Outcome of a command. If nothing was done, `test` and `scan` may be 0.
 struct CommandReport {
   std::string refusal;                       ///< Reason for a refusal, for the user; empty: done.
   BenchState state = BenchState::kDegraded;  ///< State after the command.
@@ -22,7 +22,7 @@ struct CommandReport {
 struct TareReport : CommandReport {
   double zero_V = 0.0;                 ///< New zero of the load cell.
   double zero_standard_error_V = 0.0;  ///< From the scatter of the scans.
-  double moved_N = 0.0;                ///< Decrease of all forces from this scan on, N.
+  double moved_N = 0.0;                ///< Decrease of all forces in the coming tests, N.
   std::size_t scan_count = 0;          ///< Scans used.
 };
 

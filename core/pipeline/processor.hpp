@@ -48,13 +48,13 @@ struct ProcessorSettings {
   /// Nullopt for the first acquisition.
   std::optional<daq::ScanIndex> continues_at;
   /// Facts of the record that is replayed; null for a bench. They replace clock anchors, read latency,
-  /// self-check (if it has one), unloaded level and the causes of gaps. The first anchor gives the date at
-  /// which a calibration may have expired. The sinks get its notes during the test, and its start and stop
-  /// are carried out again. With a start, force begins no test.
+  /// self-check (if it has one), unloaded level, and of a gap of the same scans cause and Gap::estimated. The
+  /// first anchor gives the date at which a calibration may have expired. The sinks get its notes during the
+  /// test, and its start and stop are carried out again. With a start, force begins no test.
   std::shared_ptr<const daq::RecordedFacts> recorded;
   std::optional<daq::SecondChannel> second;  ///< Second channel of the board; nullopt if there is none.
-  /// Whether the stamps are of the machine's own clock. If not, tests have no clock anchors, measured
-  /// scan rate, read latency and stalls.
+  /// Whether the stamps are of the machine's own clock. If not, tests have no stalls; they have clock
+  /// anchors, measured scan rate and read latency only by `recorded`.
   bool clock_is_real = true;
   CalibrationInUse calibration = {};
 };
@@ -62,7 +62,7 @@ struct ProcessorSettings {
 /// Thread-bound: the processing thread.
 class Processor {
  public:
-  /// Tells the sinks that the bench is idle or armed: scans are expected.
+  /// Tells the sinks, in this thread, that the bench is idle or armed: scans are expected.
   /// \param sinks  called in this order; they outlive the processor.
   /// \throws std::invalid_argument as Segmenter.
   Processor(const ProcessorSettings& settings, daq::Calibration calibration, std::vector<Sink*> sinks);
@@ -84,7 +84,7 @@ class Processor {
 
   /// Arms the bench: force above the trigger begins a test, also if it is there already.
   [[nodiscard]] CommandReport arm(const std::string& who);
-  /// Begins a test with the next scan.
+  /// Begins a test; the next scan is its trigger scan.
   [[nodiscard]] CommandReport start(const std::string& who);
   /// Ends the running test with the latest scan, or cancels a start() before its first scan; without either,
   /// disarms the armed bench.
@@ -96,10 +96,13 @@ class Processor {
   /// BenchState::kFinishing. Refused during a test, without scans from the board, without readings in volts
   /// or counts, with too few unloaded scans, with the converter at a rail, and if that mean is a load: as a
   /// coefficient, the larger of SegmenterSettings::start_coefficient and UnloadedLevel::kFarthest or more.
+  /// Sinks learn the zero only from a note in the next test: the caller sets it in the header of their
+  /// records.
   [[nodiscard]] TareReport tare(const std::string& who);
   /// Replaces the calibration from the next scan on. Refused unless the bench is idle. Scans kept for the
   /// next test are dropped: its record begins after this call. Those kept for its self-check and for tare()
-  /// are dropped too, and the unloaded level is that of the settings again.
+  /// are dropped too, and the unloaded level is that of the settings again. Sinks learn the
+  /// calibration only from a note in the next test: the caller sets it in the header of their records.
   /// \param calibration  of the same board.
   /// \param in_use  as ProcessorSettings::calibration.
   [[nodiscard]] CommandReport recalibrate(daq::Calibration calibration, const CalibrationInUse& in_use,

@@ -30,12 +30,12 @@
 
 namespace stickslip::pipeline {
 
-/// Coefficients are force over normal load.
+/// Coefficients are force over normal load. A dwell counts as at least two scans.
 struct SegmenterSettings {
   double scan_rate_Hz = 350.0;
   double step_coefficient = 0.0;    ///< One A/D step; 0 if unknown.
   double start_coefficient = 0.05;  ///< Trigger, above the unloaded level.
-  double start_dwell_s = 0.010;     ///< Time above the trigger that begins a test; at least two scans count.
+  double start_dwell_s = 0.010;     ///< Time at or above the trigger that begins a test.
   double end_coefficient = 0.02;    ///< End threshold, above the unloaded level; < start_coefficient.
   /// Time below the end threshold that ends a test; must exceed the slack part of a cycle.
   double unload_dwell_s = 0.25;

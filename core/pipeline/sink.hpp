@@ -37,7 +37,7 @@ struct TestStart {
 
 /// Cause of the end of a test.
 enum class EndCause {
-  kUnloaded,          ///< The force went back to zero.
+  kUnloaded,          ///< The force went back to the unloaded level.
   kNoRelativeMotion,  ///< The belt stopped; the coupling stays stretched.
   kEndOfInput,        ///< The source has no more scans.
   kCommand,           ///< A command ended it.
@@ -86,9 +86,9 @@ struct TestEnd {
   std::optional<daq::LatencyHistogram> read_latency;  ///< Delays of its blocks; nullopt if none is known.
 };
 
-/// Interface of a sink. The processing thread calls it in this order: began, (scans | gap | anchor | fall |
-/// cycle | note)*, ended. Must not throw. Only a sink that must never lose data (the record) may block; it
-/// then stalls the processing.
+/// Interface of a sink. The processing thread calls it, the first bench_changed() the thread that makes the
+/// Processor. Order of a test: began, (scans | gap | anchor | fall | cycle | note)*, ended. Must not throw.
+/// Only a sink that must never lose data (the record) may block; it then stalls the processing.
 class Sink {
  public:
   virtual ~Sink() = default;
@@ -103,9 +103,9 @@ class Sink {
   virtual void gap(const daq::Gap& /*gap*/) {}
   /// Clock readings at a scan of the running test; in rising order, and after the scan itself.
   virtual void anchor(const daq::ClockAnchor& /*anchor*/) {}
-  /// A fall, as soon as it is detected; if it is a slip, its cycle follows.
+  /// A fall, after the block in which it is detected; if it is a slip, its cycle follows.
   virtual void fall(const detect::FallBegun& /*fall*/) {}
-  /// A cycle, as soon as it is complete, before the whole-test estimate refines it.
+  /// A cycle, after the block in which it is complete, before the whole-test estimate refines it.
   virtual void cycle(const detect::Cycle& /*cycle*/) {}
   /// A note at a scan of the running test; not ordered relative to the scans.
   virtual void note(const daq::Note& /*note*/) {}
@@ -120,7 +120,7 @@ class Sink {
                         const detect::LiveState& /*live*/) {}
   /// The state of the bench has changed.
   virtual void bench_changed(BenchState /*state*/) {}
-  /// A trouble keeps the bench in its state.
+  /// A trouble that keeps the bench in its state was detected.
   /// \param duration_s  time in the state so far.
   virtual void bench_stays(BenchState /*state*/, double /*duration_s*/, BenchTrouble /*trouble*/) {}
 };

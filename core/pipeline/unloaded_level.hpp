@@ -36,7 +36,8 @@ class UnloadedLevel {
   /// Shortest quiet stretch that gives a level before a test, or ends a test.
   static constexpr double kQuiet_s = 0.5;
 
-  /// \param scan_rate_Hz  > 0. \param stretch_s  length of a stretch; less than eight scans counts as eight.
+  /// \param scan_rate_Hz  > 0.
+  /// \param stretch_s  length of a stretch; taken as four quarters of 2 … 10⁶ whole scans each.
   /// \param step_coefficient  one A/D step; 0 if unknown.
   UnloadedLevel(double scan_rate_Hz, double stretch_s, double step_coefficient);
 

@@ -46,7 +46,8 @@ struct Finalised {
 ///
 /// A damaged journal, or one with a torn end and fewer scans than expected, is renamed to
 /// TEST.journal.damaged instead of removed; one that ends in .damaged already keeps its name. Its record
-/// holds all readable data, has the status incomplete or interrupted, and names what is missing.
+/// holds all readable data, has the status incomplete or interrupted, and names what is missing. A torn end
+/// alone is dropped; a complete test then has the status recovered.
 ///
 /// Run it in a process of its own: HDF5 has one global lock and its errors can be fatal. It starts no
 /// threads; `evaluate` may.

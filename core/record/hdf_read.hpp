@@ -1,8 +1,8 @@
 /// \file
 /// Reads data sets and attributes of untrusted files. All functions except has() throw HdfError that names
 /// the object and the fault. Numbers must be stored as type T exactly (kind, size, sign), little-endian. A
-/// column of more than 2²⁸ rows is refused, also by row_count(), and so are more than 64 MiB of texts in one
-/// call.
+/// column of more than 2²⁸ rows is refused, also by row_count(), and so are more than 64 MiB of texts of data
+/// sets in one call.
 #pragma once
 
 #include <optional>

@@ -42,7 +42,7 @@ class JournalWriter {
  public:
   /// Creates the file, which must not exist, locks it (journal_care.hpp), writes the header and makes file
   /// and name durable. A header without uuid gets one. Errors: kFailure; its file is then removed if
-  /// possible.
+  /// possible, unless another process has locked it.
   /// \param header  has a load cell if the board gives counts (contract).
   /// \param calls  must outlive the journal.
   [[nodiscard]] static base::Result<JournalWriter> create(const std::filesystem::path& path,

@@ -48,8 +48,8 @@ class JournalEntries {
   /// Damaged bytes skipped so far, rising.
   [[nodiscard]] const std::vector<UnreadBytes>& skipped() const noexcept { return skipped_; }
   /// After next() returned nullopt: the end of the file if it looks as after a stop. The file then ends
-  /// within an entry, or contains only zeros after an entry or from a sector boundary (512 bytes) within one
-  /// on. Damage can look the same.
+  /// within an entry, or contains only zeros: from its beginning, the end of an entry, or a sector boundary
+  /// (512 bytes) within one on. Damage can look the same.
   [[nodiscard]] const std::optional<UnreadBytes>& torn_end() const noexcept { return torn_end_; }
   /// Read error of the disk with its remedy; empty if there was none. Such bytes do not count as damaged.
   [[nodiscard]] const std::string& error() const noexcept { return error_; }

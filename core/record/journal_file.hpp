@@ -19,7 +19,8 @@ namespace stickslip::record {
 class JournalFile {
  public:
   /// Creates the file, which must not exist, locks it (journal_care.hpp), writes its first entry, and syncs
-  /// content and name. Errors: kFailure; its file is then removed if possible.
+  /// content and name. Errors: kFailure; its file is then removed if possible, unless another process has
+  /// locked it.
   /// \param header  bytes of the first entry.
   /// \param calls  must outlive the object.
   [[nodiscard]] static base::Result<JournalFile> create(const std::filesystem::path& path,
@@ -31,7 +32,7 @@ class JournalFile {
     kItself,
     kNothing,  ///< Removed, renamed, or its folder was.
     kAnother,  ///< Another file has the path.
-    kUnknown,  ///< The path cannot be examined; see errno.
+    kUnknown,  ///< The path or the open file cannot be examined; see errno.
   };
   [[nodiscard]] Place place() const;
 

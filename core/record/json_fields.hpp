@@ -50,7 +50,8 @@ Json encode(const T& value) {
   }
 }
 
-/// Inverse of encode(). \throws std::exception for JSON of another type.
+/// Inverse of encode(). \throws std::exception for JSON of another type. But a whole number takes a fraction,
+/// cut, and a column takes null as empty.
 inline void decode(const Json& from, double& value) {
   if (from.is_null()) {
     value = std::numeric_limits<double>::quiet_NaN();
@@ -86,7 +87,7 @@ void put(Json& object, std::string_view key, const T& value) {
 }
 
 /// Reads the value under a key; inverse of put(). Without the key an optional, text or column becomes empty.
-/// \throws std::exception if any other value is missing, or for another type.
+/// \throws std::exception if any other value is missing, or as decode().
 template <typename T>
 void take(const Json& object, std::string_view key, T& value) {
   const auto found = object.find(std::string{key});
@@ -150,7 +151,8 @@ inline Json cycle_to_array(const detect::Cycle& cycle) {
 }
 
 /// Inverse of cycle_to_array(). Later columns that are missing have their defaults; columns behind the known
-/// ones are ignored. \throws std::exception if one of the first kFirstCycleColumns is missing.
+/// ones are ignored. \throws std::exception if one of the first kFirstCycleColumns is missing, or as
+/// decode().
 inline detect::Cycle cycle_from_array(const Json& array) {
   detect::Cycle cycle;
   std::size_t i = 0;

@@ -21,10 +21,9 @@ void judge_journal(const std::filesystem::path& path, Verdict& verdict);
 
 // For records.
 
-/// Reads every data set under `file` to locate damage: those in chunks chunk by chunk, others as a whole. Of
-/// these it does not read texts and arrays of variable length. A chunk that is not stored is damage, and so
-/// is what would be more than 256 MiB to read at once. After 100 damaged chunks of a data set the rest of it
-/// is not read.
+/// Reads every data set under `file` to locate damage, but for texts and arrays of variable length: those in
+/// chunks chunk by chunk, others as a whole. A chunk that is not stored is damage, and so is what would be
+/// more than 256 MiB to read at once. After 100 damaged chunks of a data set the rest of it is not read.
 void judge_chunks(hid_t file, Verdict& verdict);
 /// Judges the rows of raw: order of the scans, jumps without a gap, values that the board cannot give, and
 /// what is computed from other columns (time, force, flag of saturation, second channel). If there is a scan,
@@ -32,7 +31,8 @@ void judge_chunks(hid_t file, Verdict& verdict);
 /// neither. Reports each kind of fault once, at its first row.
 /// \param record  everything except scans and spikes.
 /// \throws std::exception if a column is missing, unreadable or of another length, or an index out of range.
-/// Only codes of the second channel, and forces beside raw values that are no counts, may be missing.
+/// Only codes of the second channel may be missing, and forces unless raw has counts and there is a load
+/// cell.
 void judge_raw(hid_t entry, const Record& record, Verdict& verdict);
 
 // For records and journals.

@@ -35,7 +35,7 @@ void read_identity(hid_t entry, Record& record);
 /// force can be computed: counts or voltages without a load cell, coefficients without a sled mass.
 [[nodiscard]] std::optional<daq::Calibration> force_column(const RecordHeader& header);
 
-/// Writes the group raw: times, scan indices, raw values, forces and flags.
+/// Writes the group raw: times, scan indices, raw values, forces if force_column() has a value, and flags.
 /// \param take_end  if any: called between the scans and their flags, to set record.spikes. The source
 ///        is then read twice.
 /// \return SHA-256 of the raw values as the file stores them (u16, u32 or f64, little-endian), hexadecimal.

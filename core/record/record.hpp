@@ -34,7 +34,8 @@ inline constexpr std::int64_t kOldestFormatVersion = 1;  ///< Oldest version tha
 /// Completeness of a record. Gaps in the acquisition, such as overruns, do not change it.
 enum class Status {
   kComplete,  ///< The test ended and everything was written.
-  /// The program was stopped or killed before the end of the test. A part of the journal may be damaged too.
+  /// The program was stopped or killed before the end of the test, or the journal has no readable end. A part
+  /// of the journal may be damaged too.
   kInterrupted,
   /// The test ended and all its scans are here; unreadable bytes after the journal's end entry were dropped.
   kRecovered,
@@ -130,15 +131,16 @@ struct ProcessFacts {
   std::string program;
   std::string version;
   std::string commit;
-  std::string configuration;  ///< Complete text of the configuration file.
-  std::string estimator;      ///< Name of the estimator, for estimator_of(); empty: "fit".
-  std::string method;         ///< Test method, method_text(); empty: the default method.
-  std::string kept;           ///< Corrections left out, analysis::text_of(SkippedCorrections); empty: none.
+  /// Complete text of the configuration file; of `stickslip simulate` its command line. Empty: none.
+  std::string configuration;
+  std::string estimator;  ///< Name of the estimator, for estimator_of(); empty: "fit".
+  std::string method;     ///< Test method, method_text(); empty: the default method.
+  std::string kept;       ///< Corrections left out, analysis::text_of(SkippedCorrections); empty: none.
   /// Complete text of the tester's characterisation file; empty: none.
   std::string characterisation;
   std::string realtime;    ///< Scheduling and memory locking that were granted.
   std::string simulation;  ///< Method, accuracy, extent and time of a simulation without a clock.
-  // Of an imported trace.
+  // Of an imported trace, also of a table of `stickslip export`.
   std::string source_file;                  ///< Name of the file without its folder.
   std::optional<std::int64_t> source_size;  ///< Bytes.
   std::string source_sha256;                ///< Of all its bytes, hexadecimal.
@@ -182,7 +184,7 @@ struct Event {
   bool operator==(const Event&) const = default;
 };
 
-/// EndRecord::cause of a test during which the program died.
+/// EndRecord::cause of a test during which the program died, or whose journal has no readable end.
 inline constexpr std::string_view kProgramDied = "program-died";
 /// Element of EndRecord::reasons that goes with Status::kInterrupted.
 inline constexpr std::string_view kInterruptedWhy = "the program stopped before the end of the test";
@@ -194,7 +196,7 @@ struct EndRecord {
   std::string cause;                 ///< Cause of the end: pipeline::name(EndCause), or kProgramDied.
   std::optional<std::int64_t> end_realtime_ns;  ///< realtime_at() the end of the last scan.
   std::optional<double> compute_time_s;         ///< Time that the evaluation took; absent if not measured.
-  std::optional<daq::LatencyHistogram> read_latency;  ///< How late the blocks were read.
+  std::optional<daq::LatencyHistogram> read_latency;  ///< How late the blocks were read; absent if unknown.
   /// Coefficient of the unloaded cell at the end; absent unless the test ended by unloading with a quiet
   /// force.
   std::optional<double> unloaded_level{};
@@ -233,7 +235,8 @@ struct Record {
   std::vector<ClockAnchor> anchors;
   std::vector<Event> events;
   std::optional<EndRecord> end;  ///< Absent while the test runs, and in a journal without an end.
-  std::string sha256;            ///< Stored checksum of the raw values, hexadecimal; set by reader.hpp.
+  /// Stored checksum of the raw values, hexadecimal; set by reader.hpp and read_apart.hpp, else empty.
+  std::string sha256;
 };
 
 /// Sets record.end. Its cycles and spikes replace the record's, and are then empty in record.end.

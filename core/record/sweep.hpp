@@ -31,7 +31,7 @@ struct SweepAxis {
 struct SweepFacts {
   std::string version;     ///< Of the program.
   std::string commit;      ///< Of the program.
-  std::string command;     ///< Without options that do not affect results: output, threads.
+  std::string command;     ///< Without options that do not affect results, such as --threads.
   std::string method;      ///< Test method, method_text().
   std::string scene_name;  ///< Name of the scene.
   std::string scene_text;  ///< Complete text of the scene at the first point.
@@ -52,7 +52,8 @@ struct SweepRun {
   std::int64_t number = 0;
   analysis::TestResults results;
   model::TestTruth truth;
-  std::int64_t true_cycle_count = 0;  ///< Number of true slips, including those after the pull.
+  /// Number of true slips from the first scan that arrived to the end of the scene, also after the pull.
+  std::int64_t true_cycle_count = 0;
 };
 
 /// The runs by columns, about 1.1 kB for each run. Row i of each column belongs to run i. Until set() is

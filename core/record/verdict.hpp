@@ -24,7 +24,9 @@ enum class Judgement {
   /// Undamaged, but data are missing or not reliable: a gap, a status other than complete, a seal left open,
   /// a record of stickslipd without configuration, clocks that contradict the scan rate; and every journal.
   kIncomplete,
-  kDamaged,    ///< Checksums or contents are inconsistent, or the file is truncated.
+  /// Checksums or contents are inconsistent, or a record is truncated; a journal with a torn end is
+  /// kIncomplete.
+  kDamaged,
   kNotJudged,  ///< The file does not exist, has an unknown kind or version, or cannot be read now.
 };
 
@@ -48,12 +50,14 @@ struct Verdict {
   Judgement judgement = Judgement::kNotJudged;
   std::string kind;  ///< "record" or "journal"; empty exactly if the judgement is kNotJudged.
   std::optional<std::int64_t> format_version;
-  std::optional<std::int64_t> scans_present;    ///< Number of scans that could be read.
-  std::optional<std::int64_t> scans_committed;  ///< Number of scans that a record says were written.
-  std::string status;                           ///< Name of the Status that the file states.
+  std::optional<std::int64_t> scans_present;  ///< Number of scans that could be read.
+  /// Number of scans that a record says were written; absent also if its raw values could not be judged.
+  std::optional<std::int64_t> scans_committed;
+  std::string status;  ///< Name of the Status that the file states.
   std::vector<daq::Gap> gaps;
-  std::string sha256_stored;  ///< Checksum of the raw values stored in a record.
-  std::string sha256_found;   ///< Checksum computed from the raw values of a record.
+  /// Checksum of the raw values stored in a record; empty also if they could not be judged.
+  std::string sha256_stored;
+  std::string sha256_found;  ///< Checksum computed from the raw values of a record.
   std::vector<Finding> findings;
 
   // Each adds a finding; both texts may quote the file and are made printable.

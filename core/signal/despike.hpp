@@ -37,8 +37,8 @@ struct DespikedScan {
 /// Corners, steps and oscillations with at least 5 scans a cycle fail the last condition (with fewer, the
 /// estimated noise is that of the oscillation). Scans before the middle enter repaired.
 ///
-/// The delay is three scans. The three scans at each end are tested by the first test only; a trace of
-/// fewer than three is not tested. Does not allocate.
+/// The delay is three scans. The three scans at each end are tested by the first test only, the outer two
+/// with the neighbours that they have; a trace of fewer than three is not tested. Does not allocate.
 class Despiker {
  public:
   /// Takes the next scan. \param sigma  standard deviation of the noise of one scan (NoiseEstimator).

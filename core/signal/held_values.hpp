@@ -22,7 +22,8 @@ namespace stickslip::signal {
 /// Largest probability of finding a flat top, and of finding a frozen value, in a test without that fault.
 inline constexpr double kFalseAlarm = 1e-6;
 
-/// Whether a scan is left out: a spike, or at a rail of the converter. Must be set.
+/// Whether a scan is left out: at a rail of the converter, and, except for frozen_values(), a spike. Must be
+/// set.
 /// \param scan  index of its value.
 using LeftOut = std::function<bool(std::size_t scan)>;
 
@@ -48,8 +49,9 @@ struct HeldValues {
 /// the most scans. A clipped signal that gets as much noise behind the amplifier as before it is not told
 /// from a sound one.
 /// \param step  of the converter, or the smallest difference of neighbours as measured.
-/// \return nullopt if there is none; also unless the largest value and the step are positive, and unless 68
-/// consecutive scans outside the band of two steps show noise clearly above that of rounding.
+/// \return nullopt if there is none; also unless the largest value and the step are positive, if there are no
+/// 68 consecutive scans outside the band of two steps, and if the quietest of such 68 show no noise clearly
+/// above that of rounding.
 [[nodiscard]] std::optional<HeldValues> flat_top(const base::LongColumn<double>& values,
                                                  const LeftOut& left_out, double step);
 

@@ -12,7 +12,7 @@
 
 namespace stickslip::sim {
 
-/// Present position of the belt in its sequence of segments.
+/// Present position of the belt in its sequence of segments. Each `now` lies in the present segment.
 class BeltWalk {
  public:
   /// \param motion  outlives this. \param scan_rate_Hz > 0

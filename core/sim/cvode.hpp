@@ -27,7 +27,7 @@ class OdeSystem {
  public:
   struct Event {
     double value = -1.0;  ///< Below zero before the event; −1 for an unused event.
-    double slope = 0.0;   ///< Derivative of `value` along the motion, 1/s; always 0: no extremes are sought.
+    double slope = 0.0;   ///< Derivative of `value` by time, per s; always 0: no extremes are sought.
     /// Expected error of `value` at an extreme; an extreme closer to zero counts in undecided_count().
     double doubt = 0.0;
   };
@@ -43,7 +43,8 @@ class OdeSystem {
 /// Integrator with complete event detection. CVODE finds an event only if its sign differs at the ends of a
 /// step. This class also finds one at an extreme inside the step, located where the slope changes its sign,
 /// and one that is zero at the start and falls first. An extreme exactly at zero is an event. No event is
-/// missed while steps (set_longest_step()) are not longer than the time between two extremes.
+/// missed while steps (set_longest_step()) are not longer than the time between two extremes, unless its
+/// slope is always 0.
 ///
 /// Allocates when constructed; not afterwards, as far as CVODE itself does not. Thread-bound.
 class Cvode {

@@ -108,8 +108,8 @@ struct ModeStart {
   /// A slip from the belt's speed, because the contact gave way; perhaps at once, without a stick before.
   bool onset = false;
   bool capture = false;  ///< The slip before ended because the sled had reached the belt's speed.
-  /// S and K of the present contact, with drift, without dependence on speed. From an onset on, S is the
-  /// limit that was reached, with ageing; before, S is without ageing.
+  /// S and K of the present contact, with drift, without dependence on speed. From the contact's onset on, S
+  /// is the limit that was reached, with ageing; before, S is without ageing.
   Coefficients paper;
   double coefficient = 0.0;  ///< F/(m g) of the spring; of a slack coupling minus the slack times ω₀²/g.
 };

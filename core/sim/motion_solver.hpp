@@ -32,7 +32,8 @@ struct SolverMethod {
 };
 
 /// Computes the motion of the sled and shows its force, in the order of time. The constructor leaves it as
-/// restart() does. Its memory is constant. Thread-bound.
+/// restart() does. Its memory is constant. Where it promises not to allocate, CVODE itself still may
+/// (NumericSolver). Thread-bound.
 class MotionSolver {
  public:
   virtual ~MotionSolver() = default;

@@ -46,10 +46,10 @@ class NumericMotion {
 };
 
 /// Makes the motion with Coulomb friction; K may depend on time, belt travel and the speed of sliding.
-/// \param observer  may be null; outlives the motion.
+/// \param motion  is copied. \param observer  may be null; outlives the motion.
 [[nodiscard]] std::unique_ptr<NumericMotion> make_sliding_motion(const Motion& motion, double scan_rate_Hz,
                                                                  double accuracy, MotionObserver* observer);
-/// Makes the motion with rate-and-state friction. \param motion  with rate_and_state.
+/// Makes the motion with rate-and-state friction. \param motion  with rate_and_state; is copied.
 /// \param observer  may be null; outlives the motion.
 [[nodiscard]] std::unique_ptr<NumericMotion> make_rate_and_state_motion(const Motion& motion,
                                                                         double scan_rate_Hz, double accuracy,

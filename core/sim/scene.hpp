@@ -157,9 +157,9 @@ struct SceneChanges {
 
 /// Reads a scene file and applies the changes. Usage error with file, line, value and what is allowed:
 /// unreadable file, invalid TOML, unknown or missing key, unknown effect, effects that exclude each other,
-/// missing or wrong unit, value out of range, S < K. Usage error too: a change that removes what is absent, a
-/// duration too short for the phases beside the pull. An error caused by a change names its origin instead of
-/// the line.
+/// missing or wrong unit, value out of range, S < K. Usage error too: a change that base::Settings refuses,
+/// such as the removal of what is absent, and a duration too short for the phases beside the pull. An error
+/// caused by a change names its origin instead of the line.
 [[nodiscard]] base::Result<Scene> load_scene(const std::filesystem::path& file,
                                              const SceneChanges& changes = {});
 /// Parses the text of a scene; usage errors as of load_scene(). \param file  stands for the file in messages
@@ -184,11 +184,12 @@ struct Pull {
 /// nullopt with `speed_ramp`, and without `constant_speed` (also for a `piecewise_speed` that is steady).
 [[nodiscard]] std::optional<double> steady_pull_speed_m_per_s(const Scene& scene);
 
-/// Belt speed over time, counted from the first movement; nullopt for a steady pull and for a belt that never
-/// moves forwards. Of `constant_speed` it shows pull and stop, not the return of the carriage, whose end
-/// depends on the force. If stop_s is 0, and after the last point of `piecewise_speed`, the last speed goes
-/// on for ever. Curves are approximated by lines within 0.1 % of the speed's change. nullopt too if it needs
-/// more points than PullSpeed::kMostPoints.
+/// Belt speed over time, counted from the first movement; nullopt for `constant_speed` without an effect that
+/// shapes its pull, for one speed from the first movement on, and for a belt that never moves forwards. Of
+/// `constant_speed` it shows pull and stop, not the return of the carriage, whose end depends on the force.
+/// If stop_s is 0, and after the last point of `piecewise_speed`, the last speed goes on for ever. Curves are
+/// approximated by lines within 0.1 % of the speed's change. nullopt too if it needs more points than
+/// PullSpeed::kMostPoints.
 [[nodiscard]] std::optional<model::PullSpeed> pull_speed_of(const Scene& scene);
 
 /// True scan rate at this nominal rate, with the clock's error.

@@ -30,7 +30,7 @@
 namespace stickslip::sim {
 
 /// Simulates one repetition of a scene, reading by reading, with the effects that the scene lists. Its memory
-/// is constant. Thread-bound.
+/// is constant; where it promises not to allocate, CVODE itself still may. Thread-bound.
 ///
 /// next() throws std::runtime_error if CVODE fails (NumericSolver), and so do restart() and the constructor
 /// if the first scans are missing; then only restart() may follow.

@@ -23,7 +23,7 @@ struct TraditionalTruth {
 /// \param seed     of the run.
 /// \param onset_s  first slip onset, true seconds after the start of the scene.
 /// \param pull_speed_m_per_s  turns method.kinetic_travel into time; > 0 if that is set.
-/// \return a coefficient is nullopt if the pull is too short for it.
+/// \return a coefficient is nullopt if the pull ends before the maxima or the travel that it needs.
 /// \throws std::runtime_error if CVODE fails (NumericSolver).
 [[nodiscard]] TraditionalTruth traditional_truth(const Scene& scene, std::uint64_t seed, double onset_s,
                                                  const model::Method& method, double pull_speed_m_per_s);
