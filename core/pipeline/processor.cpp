@@ -148,7 +148,10 @@ void Processor::note_gap(daq::Gap gap) {
   }
   ++gap_count_;
   lost_scan_count_ += gap.count;
-  if (gap.estimated) meter_.restarted();
+  if (gap.estimated) {
+    meter_.restarted();
+    if (const auto last = picker_.flush(); last && test_is_running()) note_anchor(*last);
+  }
   if (!test_is_running()) {
     // What was before a gap cannot be shown to belong to the coming test.
     discard_waiting();

@@ -190,7 +190,7 @@ daq::SelfCheck check_idle(base::ScanIndex first, std::span<const double> raw,
                    [&](double value) { return calibration.force_N(value); });
     const double step_N = calibration.step_coefficient() * load_N;
     check.spike_count = despike(force_N, step_N / std::sqrt(12.0));
-    const bool with_hum = scan_rate_Hz > analysis::kLowestRateForHum_Hz;
+    const bool with_hum = scan_rate_Hz >= analysis::kLowestRateForHum_Hz;
     const IdleFit fit = fit_idle(force_N, scan_rate_Hz, with_hum);
     check.zero_N = fit.zero;
     check.zero_standard_error_N = fit.zero_error;

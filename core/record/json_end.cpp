@@ -50,11 +50,13 @@ Json results_to_json(const analysis::TestResults& results) {
 }
 
 Json latency_to_json(const daq::LatencyHistogram& latency) {
-  return {{"counts", latency.counts()}, {"largest", latency.largest_s()}};
+  return {{"counts", latency.counts()}, {"largest", encode(latency.largest_s())}};
 }
 
 daq::LatencyHistogram latency_from_json(const Json& object) {
-  return {object.at("counts").get<daq::LatencyHistogram::Counts>(), object.at("largest").get<double>()};
+  double largest_s = 0.0;
+  decode(object.at("largest"), largest_s);
+  return {object.at("counts").get<daq::LatencyHistogram::Counts>(), largest_s};
 }
 
 analysis::TestResults results_from_json(const Json& object) {

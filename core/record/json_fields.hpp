@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -50,8 +51,8 @@ Json encode(const T& value) {
   }
 }
 
-/// Inverse of encode(). \throws std::exception for JSON of another type. But a whole number takes a fraction,
-/// cut, and a column takes null as empty.
+/// Inverse of encode(). \throws std::exception for JSON of another type, and for a whole number beyond those
+/// of its type.
 inline void decode(const Json& from, double& value) {
   if (from.is_null()) {
     value = std::numeric_limits<double>::quiet_NaN();
@@ -66,7 +67,14 @@ inline void decode(const Json& from, double& value) {
 
 template <typename T>
 void decode(const Json& from, T& value) {
-  if constexpr (std::is_same_v<T, std::vector<double>>) {
+  if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) {
+    const bool fits = from.is_number_unsigned()  ? std::in_range<T>(from.get<std::uint64_t>())
+                      : from.is_number_integer() ? std::in_range<T>(from.get<std::int64_t>())
+                                                 : false;
+    if (!fits) throw std::invalid_argument(from.dump() + " is no such whole number");
+    value = from.get<T>();
+  } else if constexpr (std::is_same_v<T, std::vector<double>>) {
+    if (!from.is_array()) throw std::invalid_argument(from.dump() + " is no column");
     value.assign(from.size(), 0.0);
     for (std::size_t i = 0; i < value.size(); ++i) decode(from.at(i), value[i]);
   } else {

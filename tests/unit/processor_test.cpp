@@ -28,6 +28,7 @@ class Diary final : public Sink {
     values.insert(values.end(), raw.begin(), raw.end());
     codes.insert(codes.end(), second.begin(), second.end());
   }
+  void anchor(const daq::ClockAnchor& anchor) override { anchors.push_back(anchor); }
   void gap(const daq::Gap& gap) override {
     words.push_back("gap");
     gaps.push_back(gap);
@@ -51,6 +52,7 @@ class Diary final : public Sink {
   std::vector<double> values;
   std::vector<std::int32_t> codes;
   std::vector<daq::Gap> gaps;
+  std::vector<daq::ClockAnchor> anchors;
   std::vector<TestEnd> ends;
   std::vector<std::pair<BenchTrouble, double>> troubles;  ///< And the time in the state, s.
   std::vector<std::string> notes;
@@ -82,7 +84,8 @@ class ProcessorTest : public testing::Test {
   Processor make() { return {settings_, {board_, {}, 1.0}, {&diary_}}; }
 
   static void feed(Processor& processor, daq::ScanIndex first, daq::ScanIndex end,
-                   daq::ScanIndex block_size = 7) {
+                   daq::ScanIndex block_size = 7,
+                   daq::GapCause cause = daq::GapCause::kRingFull) {
     while (first < end) {
       daq::ScanBlock block;
       block.first = first;
@@ -90,7 +93,7 @@ class ProcessorTest : public testing::Test {
         block.second[block.count] = static_cast<std::int32_t>(first);
         block.raw[block.count++] = reading(first++);
       }
-      processor.process(block, daq::GapCause::kRingFull);
+      processor.process(block, cause);
     }
   }
 
@@ -243,6 +246,18 @@ TEST_F(ProcessorTest, TellsAGapInsideATestAndForgetsWhatWasBeforeOneOutside) {
   EXPECT_EQ(diary_.gaps[0].cause, daq::GapCause::kRingFull);
   EXPECT_EQ(processor.gap_count(), 2U);
   EXPECT_EQ(diary_.ends.at(0).results.lost_scan_count.value, 10.0);
+}
+
+// Delays of reads on both sides of an estimated gap cannot be compared: each side has its own anchor.
+TEST_F(ProcessorTest, AnEstimatedGapEndsTheWindowOfAnAnchor) {
+  Processor processor = make();
+  feed(processor, 0, 125);
+  ASSERT_TRUE(diary_.anchors.empty());
+  feed(processor, 130, 140, 7, daq::GapCause::kOverrun);
+  ASSERT_EQ(diary_.anchors.size(), 1U);
+  EXPECT_LT(diary_.anchors[0].scan, 125);
+  feed(processor, 140, kEnd);
+  EXPECT_GE(diary_.anchors.at(1).scan, 130);
 }
 
 // The clocks of then are the record's: those of its replay say nothing of it.

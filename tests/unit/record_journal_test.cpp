@@ -326,6 +326,22 @@ TEST(Journal, OnlyTheWordsForInfinityAreNumbers) {
 }
 
 // CRC-32C finds every single-bit error: no flip anywhere may go unnoticed.
+TEST(Journal, WholeNumbersAreOfTheirType) {
+  std::int64_t wide = 0;
+  record::decode(record::Json(-7), wide);
+  EXPECT_EQ(wide, -7);
+  std::uint32_t narrow = 0;
+  record::decode(record::Json(4294967295U), narrow);
+  EXPECT_EQ(narrow, 4294967295U);
+  for (const record::Json& other : {record::Json(2.5), record::Json(1e300), record::Json("2"),
+                                    record::Json(nullptr), record::Json(UINT64_MAX)})
+    EXPECT_THROW(record::decode(other, wide), std::exception) << other;
+  for (const record::Json& other : {record::Json(-1), record::Json(4294967296)})
+    EXPECT_THROW(record::decode(other, narrow), std::exception) << other;
+  std::vector<double> column{1.0};
+  EXPECT_THROW(record::decode(record::Json(nullptr), column), std::exception);
+}
+
 TEST(Journal, AnyFlippedBitCostsItsEntryAndNoOther) {
   const TemporaryFolder folder;
   const auto sizes = test::write_journal(folder / "a.journal", test::sample_imported());
