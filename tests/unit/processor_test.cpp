@@ -248,6 +248,13 @@ TEST_F(ProcessorTest, TellsAGapInsideATestAndForgetsWhatWasBeforeOneOutside) {
   EXPECT_EQ(diary_.ends.at(0).results.lost_scan_count.value, 10.0);
 }
 
+TEST_F(ProcessorTest, CommandsBeforeTheFirstBlockKnowWhereTheAcquisitionGoesOn) {
+  settings_.continues_at = 5000;
+  settings_.automatic = false;
+  Processor processor = make();
+  EXPECT_EQ(processor.arm("somebody").scan, 5000);
+}
+
 // Delays of reads on both sides of an estimated gap cannot be compared: each side has its own anchor.
 TEST_F(ProcessorTest, AnEstimatedGapEndsTheWindowOfAnAnchor) {
   Processor processor = make();
