@@ -51,7 +51,8 @@ class JournalEntries {
   /// within an entry, or contains only zeros: from its beginning, the end of an entry, or a sector boundary
   /// (512 bytes) within one on. Damage can look the same.
   [[nodiscard]] const std::optional<UnreadBytes>& torn_end() const noexcept { return torn_end_; }
-  /// Read error of the disk with its remedy; empty if there was none. Such bytes do not count as damaged.
+  /// Read error of the disk, its place and what helps, without the file's name; empty if there was none. It
+  /// stays: only another object reads on. Such bytes do not count as damaged.
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
   /// Bytes when it was opened; what is appended later is not read.
   [[nodiscard]] std::uint64_t file_size() const noexcept { return file_size_; }

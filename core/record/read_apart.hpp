@@ -35,11 +35,11 @@ class ApartReader {
   explicit ApartReader(base::LimitedChild child) : child_(std::move(child)) {}
 
   /// Reads a record. Its numbers are to the last bit those of the function that the child's work calls, such
-  /// as read_record(). Four things differ: bytes of texts that are no UTF-8 are replaced; an absent uuid is
-  /// "none"; scans missing without a gap become gaps with the cause unknown; gaps and clock anchors are
-  /// sorted by scan. Errors as that function, and: kUsage if reading exceeds a limit or kills the child;
-  /// kInterrupted if given_up() was true; kFailure if no child can be started or its answer makes no sense.
-  /// \param given_up  called ten times a second and at each signal; true gives up. Empty: never.
+  /// as read_record(). Three things differ: bytes of texts that are no UTF-8 are replaced; scans missing
+  /// without a gap become gaps with the cause unknown; gaps and clock anchors are sorted by scan. Errors as
+  /// that function, and: kUsage if reading exceeds a limit or kills the child; kInterrupted if given_up() was
+  /// true; kFailure if no child can be started or its answer makes no sense. \param given_up  called ten
+  /// times a second and at each signal; true gives up. Empty: never.
   [[nodiscard]] base::Result<Record> read(const std::filesystem::path& path, const base::WorkLimits& limits,
                                           const std::function<bool()>& given_up = {});
 

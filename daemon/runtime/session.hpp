@@ -109,7 +109,7 @@ class Session {
     const std::lock_guard lock{live_mutex_};
     return clocks_;
   }
-  /// Fill level of the ring, now and at most. Any thread.
+  /// Capacity of the ring and most blocks that waited in it. Any thread.
   [[nodiscard]] daq::ScanRing::Use ring_use() const noexcept { return ring_.use(); }
   /// Scans that the board has delivered. Any thread.
   [[nodiscard]] std::uint64_t delivered_scan_count() const noexcept {
