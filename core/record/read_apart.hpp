@@ -38,8 +38,8 @@ class ApartReader {
   /// as read_record(). Three things differ: bytes of texts that are no UTF-8 are replaced; scans missing
   /// without a gap become gaps with the cause unknown; gaps and clock anchors are sorted by scan. Errors as
   /// that function, and: kUsage if reading exceeds a limit or kills the child; kInterrupted if given_up() was
-  /// true; kFailure if no child can be started or its answer makes no sense. \param given_up  called ten
-  /// times a second and at each signal; true gives up. Empty: never.
+  /// true; kFailure if no child can be started or its answer makes no sense.
+  /// \param given_up  called ten times a second and at each signal; true gives up. Empty: never.
   [[nodiscard]] base::Result<Record> read(const std::filesystem::path& path, const base::WorkLimits& limits,
                                           const std::function<bool()>& given_up = {});
 
