@@ -241,6 +241,9 @@
         const test = material.tests[i];
         const trace = JSON.parse(document.getElementById(`trace-${m}-${i}`).textContent);
         trace.key = `${m}`;
+        // Times in equal steps are not listed.
+        for (const part of [trace.force, trace.slope, trace.second])
+          if (part && !part.time) part.time = part.value.map((_, n) => part.start + n * part.step);
         facts.textContent = [test.title, test.regime, `rung: ${test.rung}${test.details.rung ? `, ${test.details.rung.reason}` : ""}`, plural(trace.scan_count, "scan") + ` at ${Number(trace.rate.toPrecision(6))} Hz`,
           test.pull_speed_text, trace.thinned ? "lowest and highest scan of each part shown" : ""].filter(Boolean).join(" · ");
         if (viewer.chart) viewer.chart.destroy();

@@ -44,6 +44,11 @@ Json material_json(const Material& material, Json report) {
 std::string trace_elements(std::initializer_list<const Material*> materials) {
   std::string html;
   std::size_t m = 0;
+  constexpr std::size_t kRoomForTags = 100;
+  std::size_t size = 0;
+  for (const Material* const material : materials)
+    for (const ReportedTest& test : material->tests) size += test.trace.size() + kRoomForTags;
+  html.reserve(size);
   for (const Material* const material : materials) {
     std::size_t i = 0;
     for (const ReportedTest& test : material->tests)
@@ -74,6 +79,7 @@ std::string page_of(const Json& data, std::initializer_list<const Material*> mat
   }};
   const std::string_view html = report_html();
   std::string page;
+  page.reserve(html.size() + text.size() + traces.size() + charts.script.size());
   std::size_t done = 0;
   for (const auto& [mark, part] : parts) {
     const std::size_t at = html.find(mark, done);

@@ -18,6 +18,7 @@ namespace stickslip::report {
 
 [[nodiscard]] inline nlohmann::ordered_json rounded(const std::vector<double>& values) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  json.get_ref<nlohmann::ordered_json::array_t&>().reserve(values.size());
   for (const double value : values) json.push_back(rounded(value));
   return json;
 }

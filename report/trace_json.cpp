@@ -36,6 +36,21 @@ RecordTrace thinned(RecordTrace trace) {
   return thin;
 }
 
+/// {"start": …, "step": …, "value": […]}; where the times are no equal steps, {"time": […], "value": […]}.
+Json series_json(const RecordTrace& trace) {
+  constexpr double kOfAStep = 1e-6;
+  const std::size_t count = trace.time_s.size();
+  const double step =
+      count < 2 ? 0.0 : (trace.time_s.back() - trace.time_s.front()) / static_cast<double>(count - 1);
+  bool is_even = step > 0.0;
+  for (std::size_t i = 0; i < count && is_even; ++i) {
+    is_even =
+        std::abs(trace.time_s[i] - trace.time_s.front() - static_cast<double>(i) * step) <= kOfAStep * step;
+  }
+  if (!is_even) return {{"time", rounded(trace.time_s)}, {"value", rounded(trace.value)}};
+  return {{"start", trace.time_s.front()}, {"step", step}, {"value", rounded(trace.value)}};
+}
+
 Json cycles_json(const base::LongColumn<detect::Cycle>& cycles) {
   Json json{{"time", Json::array()}, {"peak", Json::array()}, {"captured", Json::array()}};
   for (const detect::Cycle& cycle : cycles) {
@@ -90,10 +105,10 @@ Json second_json(const record::Record& record) {
   for (double& value : trace->value) value *= kMillimetresPerMetre;
   const RecordTrace shown = thinned(*std::move(trace));
   const daq::SecondQuantity quantity = record.header.board.second->quantity;
-  return {{"time", rounded(shown.time_s)},
-          {"value", rounded(shown.value)},
-          {"unit", quantity == daq::SecondQuantity::kPullSpeed ? "mm/s" : "mm"},
-          {"name", daq::name(quantity)}};
+  Json json = series_json(shown);
+  json["unit"] = quantity == daq::SecondQuantity::kPullSpeed ? "mm/s" : "mm";
+  json["name"] = daq::name(quantity);
+  return json;
 }
 
 }  // namespace
@@ -111,10 +126,10 @@ base::Result<Json> trace_json(const record::Record& record) {
   json["rate"] = record.header.board.scan_rate_granted_Hz;
   json["thinned"] = trace->time_s.size() > kMostPointsOnPage;
   const RecordTrace force = thinned(std::move(*trace));
-  json["force"] = {{"time", rounded(force.time_s)}, {"value", rounded(force.value)}};
+  json["force"] = series_json(force);
   slope = thinned(std::move(slope));
-  json["slope"] = {
-      {"time", rounded(slope.time_s)}, {"value", rounded(slope.value)}, {"unit", scaled ? "mm/s" : "1/s"}};
+  json["slope"] = series_json(slope);
+  json["slope"]["unit"] = scaled ? "mm/s" : "1/s";
   const std::optional<double>& speed = record.header.tester.pull_speed_m_per_s;
   json["slope"]["limit"] = scaled && speed ? Json(*speed * kMillimetresPerMetre) : Json(nullptr);
   json["second"] = second_json(record);

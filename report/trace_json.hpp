@@ -19,6 +19,7 @@ inline constexpr std::size_t kMostPointsOnPage = daemon::kMostTracePoints;
 /// {"scan_count", "rate", "thinned", "force": {"time", "value"}, "slope": {"time", "value", "unit", "limit"},
 ///  "second": {"time", "value", "unit", "name"}, "cycles": {"time", "peak", "captured"},
 ///  "modes": [[from, to, "stick"|"slip"|"slide"], …], "transition"}.
+/// Beside a "value" whose times are in equal steps stand "start" and "step" instead of "time".
 /// "second" is null without a second channel; its values are in mm/s (pull_speed) or mm (sled_position).
 /// Times are in s after the first scan, rounded to 1e-6; coefficients are rounded to 1e-6; null is a break.
 /// "modes" are the detected ones: a slip that did not end in sticking slides until the next onset, the last

@@ -49,6 +49,7 @@ TEST(TraceJson, HasABreakAtAGapAndEachCycle) {
   ASSERT_EQ(trace["force"]["value"].size(), 41U);
   EXPECT_TRUE(trace["force"]["value"][20].is_null());
   EXPECT_FALSE(trace["force"]["value"][21].is_null());
+  EXPECT_EQ(trace["force"]["time"].size(), 41U);
   EXPECT_EQ(trace["cycles"]["captured"], Json::array({true, false}));
   // The stiffness and the pull speed are known: the slope is a speed, with its limit.
   EXPECT_EQ(trace["slope"]["unit"], "mm/s");
@@ -119,6 +120,11 @@ TEST(TraceJson, SlopeWithoutStiffnessIsARateWithoutALimit) {
   EXPECT_TRUE(trace["slope"]["limit"].is_null());
   // sin(0.1 i)/3 at 2 kHz begins with a slope of 0.1/3 · 2000 Hz, less i²/6 of it.
   EXPECT_NEAR(trace["slope"]["value"][0], 0.1 / 3.0 * 2000.0, 0.002 * 0.1 / 3.0 * 2000.0);
+  // Equal steps of time; the slope is that between two scans.
+  EXPECT_FALSE(trace["force"].contains("time"));
+  EXPECT_EQ(trace["force"]["start"], 0.0);
+  EXPECT_NEAR(trace["force"]["step"], 1.0 / 2000.0, 1e-12);
+  EXPECT_NEAR(trace["slope"]["start"], 0.5 / 2000.0, 1e-12);
 }
 
 TEST(TraceJson, ModesGoFromSlipToStickToSlip) {
