@@ -99,8 +99,12 @@ TEST_F(TraceImport, HeadingsOrUnitsThatChangeAreRefused) {
   // Words that mean the same, and a third row of a heading.
   request_.unit = "N";
   expect_values("t,F\ns,N\n" + rows(0, 25) + "T,f\nsec,Newton\n" + rows(25, 40), values(40));
-  const std::string three = "\"TOA5\",\"logger\"\nTIME,F\nTS,N\n,Avg\n";
-  expect_values(three + rows(0, 25) + three + rows(25, 40), values(40));
+  std::string joined;
+  for (int i = 0; i < 40; ++i) {
+    if (i % 25 == 0) joined += "\"TOA5\",\"logger\"\nTIME,RECORD,F\nTS,RN,N\n,,Avg\n";
+    joined += fmt::format("{:.2f},{},{}\n", 0.01 * i, i, 1 + i);
+  }
+  expect_values(joined, values(40));
   expect_refused("t,F\ns,mN\n" + rows(0, 25) + "t,F\ns,kN\n" + rows(25, 40),
                  "another row of units, with 'kN'");
 }

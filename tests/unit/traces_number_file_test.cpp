@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/base/regular_file.hpp"
+#include "core/base/sanitized.hpp"
 #include "core/record/finaliser.hpp"
 #include "core/record/hdf.hpp"
 #include "tests/support/bit_flips.hpp"
@@ -24,6 +25,8 @@ namespace {
 
 using testing::HasSubstr;
 
+/// Each damaged file has a child process of its own, which sanitizers make slow to start.
+constexpr int kDamagedFiles = base::kSanitized ? 30 : 150;
 constexpr std::size_t kRows = 200;  // 2 s: no other unit of time is possible.
 constexpr double kRate_Hz = 100.0;
 
@@ -428,7 +431,7 @@ TEST_F(NumberFiles, OfAFileThatIsCutShortNoValueIsTaken) {
     for (const auto compression : {MAT_COMPRESSION_NONE, MAT_COMPRESSION_ZLIB}) {
       write(version, {column("t", times()), column("F", forces())}, compression);
       const std::string whole = base::read_text(request_.path).value();
-      const std::size_t step = 1 + whole.size() / 100;
+      const std::size_t step = 1 + whole.size() / kDamagedFiles;
       for (std::size_t size = 0; size < whole.size(); size += step) {
         test::write_content(request_.path, whole.substr(0, size));
         request_.column = "F";
@@ -464,7 +467,7 @@ TEST_F(NumberFiles, ABitTheOtherWayIsAnErrorOrAResultAndHarmsNobody) {
     write(version, variables, MAT_COMPRESSION_ZLIB);
     const std::string whole = base::read_text(request_.path).value();
     std::uint64_t state = 1;  // Of a linear congruence [Knuth].
-    for (int i = 0; i < 150; ++i) {
+    for (int i = 0; i < kDamagedFiles; ++i) {
       state = state * 6'364'136'223'846'793'005U + 1'442'695'040'888'963'407U;
       test::write_flipped(request_.path, whole, (state >> 32U) % (8 * whole.size()));
       request_.column = "F";
