@@ -102,7 +102,7 @@ TEST_F(TraceImport, HeadingsOrUnitsThatChangeAreRefused) {
   std::string joined;
   for (int i = 0; i < 40; ++i) {
     if (i % 25 == 0) joined += "\"TOA5\",\"logger\"\nTIME,RECORD,F\nTS,RN,N\n,,Avg\n";
-    joined += fmt::format("{:.2f},{},{}\n", 0.01 * i, i, 1 + i);
+    joined += fmt::format("2026-11-25 12:00:00.{:02},{},{}\n", i, i, 1 + i);
   }
   expect_values(joined, values(40));
   expect_refused("t,F\ns,mN\n" + rows(0, 25) + "t,F\ns,kN\n" + rows(25, 40),
