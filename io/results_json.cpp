@@ -23,15 +23,22 @@ constexpr const char* kDiagnostics = "diagnostics";
 constexpr const char* kReason = "reason";
 constexpr const char* kPlace = "place";
 
+using Object = nlohmann::ordered_json::object_t;
+
 /// Empty, with room: without, an object copies its members each time that it grows.
 nlohmann::ordered_json object_for(std::size_t count) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
-  json.get_ref<nlohmann::ordered_json::object_t&>().reserve(count);
+  json.get_ref<Object&>().reserve(count);
   return json;
 }
 
+/// Adds a member that the object does not have: operator[] compares the name with those of all members.
+void append(nlohmann::ordered_json& object, std::string_view name, nlohmann::ordered_json value) {
+  object.get_ref<Object&>().Object::Container::emplace_back(name, std::move(value));
+}
+
 /// The value as JSON. A result whose name ends in _count becomes an integer.
-nlohmann::ordered_json number(const std::string& name, const analysis::Estimate& estimate) {
+nlohmann::ordered_json number(std::string_view name, const analysis::Estimate& estimate) {
   constexpr std::string_view kCount = "_count";
   if (!estimate.value) return nullptr;
   if (name.ends_with(kCount)) return std::llround(*estimate.value);
@@ -42,10 +49,10 @@ nlohmann::ordered_json number(const std::string& name, const analysis::Estimate&
 nlohmann::ordered_json detail_json(const analysis::ResultName& name, const analysis::Estimate& estimate) {
   constexpr std::size_t kMembers = 6;
   nlohmann::ordered_json detail = object_for(kMembers);
-  detail["value"] = number(std::string{name.name}, estimate);
-  detail["unit"] = name.unit;
-  if (estimate.standard_error) detail[kStandardError] = *estimate.standard_error;
-  if (estimate.systematic_uncertainty) detail[kSystematic] = *estimate.systematic_uncertainty;
+  append(detail, "value", number(name.name, estimate));
+  append(detail, "unit", name.unit);
+  if (estimate.standard_error) append(detail, kStandardError, *estimate.standard_error);
+  if (estimate.systematic_uncertainty) append(detail, kSystematic, *estimate.systematic_uncertainty);
   for_each_part(estimate.systematic_parts,
                 [&](analysis::UncertaintySource source, const std::optional<double>& size) {
                   if (size) detail[kParts][std::string{name_of(source).name}] = *size;
@@ -79,10 +86,13 @@ nlohmann::ordered_json uncertainties_json(const analysis::TestResults& results) 
   for (const analysis::Quantity& quantity : analysis::quantities()) {
     const analysis::Estimate& estimate = results.*quantity.estimate;
     if (!estimate.value) continue;
+    constexpr std::size_t kErrors = 2;
+    nlohmann::ordered_json errors = object_for(kErrors);
     for (const auto& [name, error] : {std::pair{kStandardError, &estimate.standard_error},
                                       std::pair{kSystematic, &estimate.systematic_uncertainty}}) {
-      if (*error) json[std::string{quantity.name}][name] = **error;
+      if (*error) append(errors, name, **error);
     }
+    if (!errors.empty()) append(json, quantity.name, std::move(errors));
   }
   return json;
 }
@@ -92,19 +102,18 @@ nlohmann::ordered_json uncertainties_json(const analysis::TestResults& results) 
 nlohmann::ordered_json results_json(const analysis::TestResults& results, bool with_details) {
   constexpr std::size_t kMembers = 64;
   nlohmann::ordered_json json = object_for(kMembers);
-  nlohmann::ordered_json details;
+  nlohmann::ordered_json details = object_for(kMembers);
   json["regime"] = model::name(results.regime);
   if (!results.regime_reason.empty()) details["regime"][kReason] = results.regime_reason;
   json["rung"] = analysis::name(results.rung);
   if (!results.rung_reason.empty()) details["rung"][kReason] = results.rung_reason;
   record::put_findings(results.findings, json);
-  nlohmann::ordered_json diagnostics;
+  nlohmann::ordered_json diagnostics = object_for(kMembers);
   analysis::for_each_result(
       results, [&](const analysis::ResultName& name, const analysis::Estimate& estimate) {
-        const std::string key{name.name};
-        if (!name.is_diagnostic) json[key] = number(key, estimate);
+        if (!name.is_diagnostic) append(json, name.name, number(name.name, estimate));
         if (name.is_diagnostic || with_details)
-          (name.is_diagnostic ? diagnostics : details)[key] = detail_json(name, estimate);
+          append(name.is_diagnostic ? diagnostics : details, name.name, detail_json(name, estimate));
       });
   if (!results.misfit_place.empty()) details["misfit"][kPlace] = results.misfit_place;
   json[kDiagnostics] = std::move(diagnostics);
