@@ -35,8 +35,12 @@ base::Result<std::vector<std::string>> BatchJournal::read_on(BatchBook& book) {
 
 std::optional<std::filesystem::path> journal_folder_of(const std::filesystem::path& record) {
   std::error_code error;
-  std::filesystem::path folder = std::filesystem::weakly_canonical(record, error).parent_path();
-  if (error) return std::nullopt;
+  const std::filesystem::path whole = std::filesystem::weakly_canonical(record, error);
+  return error ? std::nullopt : journal_folder_above(whole.parent_path());
+}
+
+std::optional<std::filesystem::path> journal_folder_above(std::filesystem::path folder) {
+  std::error_code error;
   for (int level = 0; level <= kDatedLevels; ++level) {
     if (std::filesystem::exists(folder / kBatchJournal, error)) return folder;
     if (folder == folder.root_path()) break;

@@ -45,6 +45,8 @@ class BatchJournal {
 /// The folder of the journal for a record: the record's folder or one of the two above it (dated folders).
 /// Nothing if none of them holds a journal.
 [[nodiscard]] std::optional<std::filesystem::path> journal_folder_of(const std::filesystem::path& record);
+/// The same. \param folder  of the record, canonical.
+[[nodiscard]] std::optional<std::filesystem::path> journal_folder_above(std::filesystem::path folder);
 
 /// The name of a record in the journal of `folder`: its path relative to the folder.
 [[nodiscard]] std::string name_in_journal(const std::filesystem::path& folder,

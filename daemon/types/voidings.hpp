@@ -19,6 +19,10 @@ class Voidings {
   [[nodiscard]] base::Result<std::optional<Voiding>> of(const std::filesystem::path& record);
 
  private:
+  const std::filesystem::path& canonical(const std::filesystem::path& folder);
+
+  std::map<std::filesystem::path, std::filesystem::path> canonical_;                ///< By folder as given.
+  std::map<std::filesystem::path, std::optional<std::filesystem::path>> journals_;  ///< By canonical folder.
   std::map<std::filesystem::path, BatchBook> books_;  ///< By the folders of the journals.
 };
 
