@@ -24,14 +24,7 @@ std::string of_word(std::string_view unit) {
   return word == "gf" || word == "kgf" || word == "lbf" || word == "ozf" ? word : std::string{unit};
 }
 
-}  // namespace
-
-std::string force_unit(const std::string& unit) {
-  if (quantity_unit(unit)) return unit;
-  return folded(unit).starts_with("gram") ? "gf" : unit + "f";
-}
-
-base::Result<QuantityUnit> quantity_unit(std::string_view unit) {
+std::optional<QuantityUnit> known_unit(std::string_view unit) {
   if (unit == "coefficient" || unit == "1") return QuantityUnit{daq::RawQuantity::kCoefficient, 1.0};
   if (unit == "counts") return QuantityUnit{daq::RawQuantity::kCounts, 1.0};
   if (unit == "cN") return QuantityUnit{daq::RawQuantity::kForce_N, 0.01};
@@ -42,15 +35,24 @@ base::Result<QuantityUnit> quantity_unit(std::string_view unit) {
     return QuantityUnit{daq::RawQuantity::kForce_N, *force};
   if (const auto voltage = base::parse_quantity(one, base::Dimension::kVoltage))
     return QuantityUnit{daq::RawQuantity::kVolts, *voltage};
-  const std::string word = folded(unit);
-  const bool is_mass =
-      word == "g" || word == "gram" || word == "grams" || word == "kg" || word == "lb" || word == "oz";
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string force_unit(const std::string& unit) {
+  if (known_unit(unit)) return unit;
+  return folded(unit).starts_with("gram") ? "gf" : unit + "f";
+}
+
+base::Result<QuantityUnit> quantity_unit(std::string_view unit) {
+  if (const auto known = known_unit(unit)) return *known;
+  const std::string force = force_unit(std::string{unit});
   return base::usage_error(
       "--unit: \"{}\" is no unit of force; allowed: N, mN, cN, daN, kN, gf, kgf, lbf, ozf, V, mV, "
       "counts, coefficient, percent{}",
       base::one_line(unit, 20),
-      is_mass ? fmt::format(". A force shown in {} is in {}", unit, word.starts_with("g") ? "gf" : word + "f")
-              : "");
+      known_unit(force) ? fmt::format(". A force shown in {} is in {}", unit, force) : "");
 }
 
 base::Result<CountScale> count_scale(std::string_view range, double volts_per_count) {
