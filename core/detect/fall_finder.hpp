@@ -13,7 +13,8 @@
 
 namespace stickslip::detect {
 
-/// A fall of the force between two turning points. Positions are in scans after the first scan.
+/// A fall of the force between two turning points. Positions count the scans added, from 0; scans that are
+/// missing do not count.
 struct Fall {
   double peak_at = 0.0;    ///< Position of the maximum, interpolated between scans.
   double trough_at = 0.0;  ///< Position of the following minimum, interpolated.

@@ -101,7 +101,9 @@ class Segmenter {
   /// Unloaded level at the end of the latest test; nullopt while a test runs, and unless the test ended with
   /// kUnloaded and a quiet force.
   [[nodiscard]] std::optional<double> level_after() const noexcept { return level_after_; }
-  /// Coefficient at and above which a force begins a test.
+  /// Present coefficient at and above which a force begins a test; it changes with the scans. While the
+  /// unloaded level is unknown and no pre-trigger scan is below start_coefficient, at least
+  /// UnloadedLevel::kFarthest.
   [[nodiscard]] double trigger() const noexcept;
   /// Whether the latest scans are quiet, at any force.
   [[nodiscard]] bool quiet() const noexcept { return quiet_scans_.quiet(); }

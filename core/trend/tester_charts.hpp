@@ -40,7 +40,7 @@ struct ChartKind {
 /// What one finished test gives to the charts. An absent or not finite value adds no point to its chart.
 struct TestValues {
   std::string time;    ///< ISO 8601, when the test began.
-  std::string file;    ///< Of the record, from its folder on, as voidings name it: the test is found by it.
+  std::string file;    ///< Path relative to the record folder, by which voidings name the test.
   std::string sample;  ///< Name of the sample; empty if unknown.
   std::optional<double> pull_speed_m_per_s;
   std::optional<double> mu_k;
