@@ -36,7 +36,7 @@ struct ReportedTest {
   RecordFacts facts;  ///< For the form.
   std::string scans_sha256;  ///< Of the raw values.
   std::optional<model::TestTruth> truth;
-  std::string trace;  ///< trace_json() as text, for the page; empty unless requested.
+  std::string trace;  ///< json_for_script() of trace_json(), for the page; empty unless requested.
 };
 
 /// A void test: its record does not count and was not read.

@@ -27,6 +27,7 @@ class TestFit {
  public:
   /// \param settings  must outlive this.
   explicit TestFit(const AnalysisSettings& settings) : settings_(settings) {}
+  explicit TestFit(AnalysisSettings&&) = delete;
 
   /// From the highest rung of the fit that describes the test; if none does, what the fit left. With a
   /// characterised tester γ is the tester's, unless the test alone contradicts it. Sets the trace's drift,

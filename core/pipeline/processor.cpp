@@ -34,9 +34,9 @@ Processor::Processor(const ProcessorSettings& settings, daq::Calibration calibra
       bench_(settings.automatic),
       idle_(settings.analysis.scan_rate_Hz),
       number_(settings.first_test_number),
+      next_scan_(settings.continues_at.value_or(0)),
       meter_(settings.analysis.scan_rate_Hz),
       picker_(settings.analysis.scan_rate_Hz) {
-  next_scan_ = settings_.continues_at.value_or(0);
   settings_.analysis.step_coefficient = calibration_.step_coefficient();
   if (measures_speed()) settings_.analysis.speed_step_m_per_s = settings_.second->step();
   if (settings_.recorded) {

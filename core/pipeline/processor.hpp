@@ -186,7 +186,7 @@ class Processor {
   IdleScans idle_;            ///< Those before them.
   std::optional<analysis::TestAnalysis> analysis_;
   std::int64_t number_;
-  daq::ScanIndex next_scan_ = 0;
+  daq::ScanIndex next_scan_;
   std::uint64_t scan_count_ = 0;
   std::uint64_t gap_count_ = 0;
   std::int64_t lost_scan_count_ = 0;

@@ -64,7 +64,7 @@ RecordHeader header_from_json(std::string_view text, std::int64_t* format_versio
     throw std::invalid_argument(
         fmt::format("format {}, this program reads {}", object.at("format").dump(), kFormat));
   }
-  const auto version = object.at("format_version").get<std::int64_t>();
+  const auto version = decoded<std::int64_t>(object.at("format_version"));
   if (const std::string refusal = version_refusal(version); !refusal.empty())
     throw std::invalid_argument(refusal);
   if (format_version) *format_version = version;
@@ -115,8 +115,8 @@ std::string gap_to_json(const daq::Gap& gap) {
 daq::Gap gap_from_json(std::string_view text) {
   const Json object = Json::parse(text);
   const auto cause = object.at("cause").get<std::string>();
-  return range_checked(daq::Gap{object.at("first_scan").get<daq::ScanIndex>(),
-                                object.at("scan_count").get<std::int64_t>(),
+  return range_checked(daq::Gap{decoded<daq::ScanIndex>(object.at("first_scan")),
+                                decoded<std::int64_t>(object.at("scan_count")),
                                 object.at("estimated").get<bool>(), word(cause, gap_cause_from_name(cause))});
 }
 
@@ -130,8 +130,8 @@ std::string event_to_json(const Event& event) {
 
 Event event_from_json(std::string_view text) {
   const Json object = Json::parse(text);
-  return {range_checked(object.at("scan").get<daq::ScanIndex>()),
-          object.at("realtime_ns").get<std::int64_t>(), object.at("text").get<std::string>()};
+  return {range_checked(decoded<daq::ScanIndex>(object.at("scan"))),
+          decoded<std::int64_t>(object.at("realtime_ns")), object.at("text").get<std::string>()};
 }
 
 }  // namespace stickslip::record

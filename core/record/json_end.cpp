@@ -1,5 +1,6 @@
 // The end of a journal, JSON and tables, and the runs of a sweep, which have the same results and truth.
 
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
@@ -155,7 +156,8 @@ class TableReader {
     if constexpr (std::is_integral_v<Number>) {
       // 2⁶³ is a double, the largest of 64 bits is none.
       const bool fits = value >= static_cast<double>(std::numeric_limits<Number>::min()) &&
-                        value < static_cast<double>(std::numeric_limits<Number>::max()) + 1.0;
+                        value < static_cast<double>(std::numeric_limits<Number>::max()) + 1.0 &&
+                        value == std::trunc(value);
       if (!fits)
         throw std::invalid_argument(fmt::format("tables: {} is no whole number of its column", value));
     }
@@ -168,7 +170,7 @@ class TableReader {
 
 /// As many rows as the object says, if they can be there at all.
 std::size_t rows_told(const Json& object, std::string_view key, const TableReader& table) {
-  const auto count = object.at(std::string{key}).get<std::size_t>();
+  const auto count = decoded<std::size_t>(object.at(std::string{key}));
   if (count > table.left()) throw std::invalid_argument("tables are cut short");
   return count;
 }
@@ -194,7 +196,8 @@ void read_true_tables(const Json& truth, TableReader& table, model::TestTruth& t
 /// Columns behind the known ones are those of a newer program, and are skipped.
 /// \param object  of the end.
 void read_tables(const Json& object, TableReader table, EndRecord& end) {
-  const auto columns = object.value("cycle_columns", kFirstCycleColumns);
+  const auto columns = object.contains("cycle_columns") ? decoded<std::size_t>(object.at("cycle_columns"))
+                                                        : kFirstCycleColumns;
   for (std::size_t left = rows_told(object, "cycle_count", table); left > 0; --left) {
     detect::Cycle cycle;
     std::size_t column = 0;
@@ -250,7 +253,7 @@ EndRecord end_from_bytes(std::span<const std::byte> bytes) {
   take(object, "unloaded_level", end.unloaded_level);
   if (object.contains("read_latency")) end.read_latency = latency_from_json(object.at("read_latency"));
   end.results = results_from_json(object.at("results"));
-  object.at("spikes").get_to(end.spikes);
+  for (const Json& spike : object.at("spikes")) end.spikes.push_back(decoded<daq::ScanIndex>(spike));
   for (const Json& row : object.value("cycles", Json::array())) end.cycles.push_back(cycle_from_array(row));
   if (object.contains("truth")) end.truth = truth_from_json(object.at("truth"));
   if (const auto tables = text.find('\0'); tables != std::string_view::npos) {
@@ -268,8 +271,8 @@ std::string sweep_run_to_json(const SweepRun& run) {
 
 SweepRun sweep_run_from_json(std::string_view text) {
   const Json object = Json::parse(text);
-  return {object.at("run").get<std::int64_t>(), results_from_json(object.at("results")),
-          truth_from_json(object.at("truth")), object.at("true_cycle_count").get<std::int64_t>()};
+  return {decoded<std::int64_t>(object.at("run")), results_from_json(object.at("results")),
+          truth_from_json(object.at("truth")), decoded<std::int64_t>(object.at("true_cycle_count"))};
 }
 
 }  // namespace stickslip::record

@@ -82,6 +82,14 @@ void decode(const Json& from, T& value) {
   }
 }
 
+/// A value of this type, by decode().
+template <typename T>
+[[nodiscard]] T decoded(const Json& from) {
+  T value{};
+  decode(from, value);
+  return value;
+}
+
 /// Writes a value under its key. Writes nothing for an absent optional and an empty text or column.
 template <typename T>
 void put(Json& object, std::string_view key, const T& value) {

@@ -178,8 +178,9 @@ using daq::ClockAnchor;
 /// Event at a scan of the test, as text for the user.
 struct Event {
   daq::ScanIndex scan = 0;
-  /// Clock since 1970 at the last scans before the event, which clock steps do not move; at the beginning
-  /// RecordHeader::start_realtime_ns. In a replay that of the replay.
+  /// Clock since 1970 at the last scans before the event, as it stood then; realtime_at() of the scan differs
+  /// where the clock was set. At the beginning RecordHeader::start_realtime_ns. In a replay that of the
+  /// replay.
   std::int64_t realtime_ns = 0;
   std::string text;
 

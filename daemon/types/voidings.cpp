@@ -3,9 +3,10 @@
 namespace stickslip::daemon {
 
 base::Result<std::optional<Voiding>> Voidings::of(const std::filesystem::path& record) {
+  std::error_code gone;  // A void record may have been moved away.
   std::error_code error;
   // A link may lead to another folder; else many records have one.
-  const std::filesystem::path whole = std::filesystem::is_symlink(record, error)
+  const std::filesystem::path whole = std::filesystem::is_symlink(record, gone)
                                           ? std::filesystem::weakly_canonical(record, error)
                                           : canonical(record.parent_path()) / record.filename();
   if (error || !whole.has_parent_path()) return std::optional<Voiding>{};  // It cannot be looked at.

@@ -10,6 +10,7 @@
 #include "daemon/batch/leader.hpp"
 #include "daemon/types/batch_journal.hpp"
 #include "daemon/types/batch_json.hpp"
+#include "daemon/types/voidings.hpp"
 #include "tests/support/faulty_disk.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/record_samples.hpp"
@@ -235,6 +236,28 @@ TEST_F(BatchJournalTest, IsFoundFromDatedFolders) {
   ASSERT_TRUE(BatchJournal{folder_}.append(at_noon(TestVoided{"2026/11/a.h5", "torn"})));
   ASSERT_TRUE(journal_folder_of(record));
   EXPECT_EQ(name_in_journal(*journal_folder_of(record), record), "2026/11/a.h5");
+}
+
+// By a link, under another spelling of the folder, and after it was moved away.
+TEST_F(BatchJournalTest, AVoidRecordIsVoidByAnyPath) {
+  const auto place = folder_ / "2026" / "11";
+  std::filesystem::create_directories(place);
+  std::ofstream{place / "a.h5"} << "x";
+  std::filesystem::create_symlink(place / "a.h5", folder_ / "link.h5");
+  ASSERT_TRUE(BatchJournal{folder_}.append(at_noon(TestVoided{"2026/11/a.h5", "torn"})));
+  ASSERT_TRUE(BatchJournal{folder_}.append(at_noon(TestVoided{"gone.h5", "lost"})));
+  Voidings voidings;
+  for (const auto& record :
+       {place / "a.h5", folder_ / "link.h5", place / ".." / "11" / "a.h5", folder_ / "gone.h5"}) {
+    const auto voided = voidings.of(record);
+    ASSERT_TRUE(voided);
+    EXPECT_TRUE(voided->has_value()) << record;
+  }
+  EXPECT_FALSE(voidings.of(place / "b.h5").value());
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(place);
+  EXPECT_TRUE(Voidings{}.of("a.h5").value());
+  std::filesystem::current_path(before);
 }
 
 /// A leader after a restart, and a program that says of every record that it is of one batch.

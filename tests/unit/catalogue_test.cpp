@@ -358,6 +358,24 @@ TEST_F(Catalogue, AnAbsentTextComesLast) {
   }
 }
 
+// Traces that were imported without a date.
+TEST_F(Catalogue, TheFirstOfEqualDatesAreThoseOfTheWholeList) {
+  record::Record undated = record_of("A");
+  undated.header.start_realtime_ns.reset();
+  for (const char* const name : {"a.h5", "b.h5", "c.h5"}) static_cast<void>(put(name, undated));
+  ASSERT_THAT(find().entries, SizeIs(3));
+  fs::remove(records() / "a.h5");
+  static_cast<void>(put("a.h5", undated));  // The index has it last now.
+  for (const bool reversed : {false, true}) {
+    const std::string first =
+        find({.conditions = {}, .order = {}, .reversed = reversed}).entries.front().file;
+    const Found one = find({.conditions = {}, .order = {}, .reversed = reversed, .most = 1});
+    ASSERT_THAT(one.entries, SizeIs(1));
+    EXPECT_EQ(one.entries.front().file, first);
+    EXPECT_EQ(one.match_count, 3U);
+  }
+}
+
 TEST_F(Catalogue, RefusesNamingTheValueAndWhatIsKnown) {
   EXPECT_THAT(in_range("Sx=1:2", "--where").error().message,
               HasSubstr("--where Sx=1:2: there is no result called \"Sx\""));

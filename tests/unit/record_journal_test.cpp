@@ -325,7 +325,6 @@ TEST(Journal, OnlyTheWordsForInfinityAreNumbers) {
   EXPECT_THROW(record::decode(record::Json("abc"), value), std::invalid_argument);
 }
 
-// CRC-32C finds every single-bit error: no flip anywhere may go unnoticed.
 TEST(Journal, WholeNumbersAreOfTheirType) {
   std::int64_t wide = 0;
   record::decode(record::Json(-7), wide);
@@ -342,6 +341,7 @@ TEST(Journal, WholeNumbersAreOfTheirType) {
   EXPECT_THROW(record::decode(record::Json(nullptr), column), std::exception);
 }
 
+// CRC-32C finds every single-bit error: no flip anywhere may go unnoticed.
 TEST(Journal, AnyFlippedBitCostsItsEntryAndNoOther) {
   const TemporaryFolder folder;
   const auto sizes = test::write_journal(folder / "a.journal", test::sample_imported());

@@ -295,8 +295,8 @@ TEST(ReportCsv, HasTheRungAndNoDiagnostics) {
 TEST(ReportPage, HoldsEachPartOnceAndNoMark) {
   const std::string page =
       report_page(test::sample_material(), {"const uPlot", ".uplot {}", "The MIT License"});
-  for (const char* mark :
-       {"@LICENSE@", "@UPLOT_CSS@", "@REPORT_CSS@", "@DATA@", "@UPLOT_JS@", "@CHARTS_JS@", "@REPORT_JS@"}) {
+  for (const char* mark : {"@LICENSE@", "@UPLOT_CSS@", "@COLOURS_CSS@", "@REPORT_CSS@", "@DATA@", "@TRACES@",
+                           "@UPLOT_JS@", "@UNCERTAIN_JS@", "@CHARTS_JS@", "@REPORT_JS@"}) {
     EXPECT_EQ(page.find(mark), std::string::npos) << mark;
   }
   EXPECT_THAT(page, HasSubstr("The MIT License"));
@@ -304,6 +304,17 @@ TEST(ReportPage, HoldsEachPartOnceAndNoMark) {
   EXPECT_THAT(page, HasSubstr("uPlot"));
   EXPECT_TRUE(page.starts_with("<!DOCTYPE html>"));
   EXPECT_TRUE(page.ends_with("</html>\n"));
+}
+
+TEST(ReportPage, HoldsTheTraceOfEachTestOfBothMaterials) {
+  Material a = test::sample_material();
+  a.tests.front().trace = R"({"scan_count":1})";
+  Material b = test::sample_material();
+  b.tests.back().trace = R"({"scan_count":2})";
+  const std::string page = comparison_page(a, b, compare_materials(a, b), {"", "", ""});
+  EXPECT_THAT(page, HasSubstr("id=\"trace-0-0\">{\"scan_count\":1}</script>"));
+  EXPECT_THAT(page,
+              HasSubstr(fmt::format("id=\"trace-1-{}\">{{\"scan_count\":2}}</script>", b.tests.size() - 1)));
 }
 
 }  // namespace
