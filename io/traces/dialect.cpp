@@ -27,8 +27,15 @@ constexpr std::size_t kShortTable = 10;
 constexpr std::size_t kFewerRows = 3;
 
 struct Head {
-  std::vector<std::string> lines;
+  std::string first;               ///< Line of the file.
+  std::vector<std::string> lines;  ///< Behind those that are skipped.
+  std::int64_t skipped = 0;
   Encoding encoding = Encoding::kUtf8;
+
+  /// \param number  from 1, of one in `lines`.
+  [[nodiscard]] const std::string& line(std::int64_t number) const {
+    return lines[static_cast<std::size_t>(number - 1 - skipped)];
+  }
 };
 
 struct Row {
@@ -52,16 +59,17 @@ base::Result<Head> read_head(const Source& source, const DialectOptions& options
   head.encoding = file->encoding();
   std::size_t bytes = 0;
   std::string line;
-  const auto skip = static_cast<std::size_t>(options.skip);
-  while (head.lines.size() < skip + kMostLines && bytes < kMostBytes) {
+  std::int64_t count = 0;
+  while (head.lines.size() < kMostLines && bytes < kMostBytes) {
     const auto more = file->next(line);
     if (!more) return tl::unexpected(more.error());
     if (!*more) break;
-    // Those that are skipped count alone; the first may state the separator.
-    const bool is_kept = head.lines.empty() || head.lines.size() >= skip;
-    bytes += is_kept ? line.size() : 0;
-    head.lines.emplace_back(is_kept ? line : std::string{});
+    if (count == 0) head.first = line;
+    if (count++ < options.skip) continue;
+    bytes += line.size();
+    head.lines.push_back(line);
   }
+  head.skipped = std::min(count, options.skip);
   return head;
 }
 
@@ -75,9 +83,9 @@ std::vector<Row> rows_of(const Head& head, char separator, std::int64_t skip) {
   std::vector<Row> rows;
   RowReader reader{separator};
   bool open = false;
-  for (std::size_t i = static_cast<std::size_t>(skip); i < head.lines.size(); ++i) {
+  for (std::size_t i = static_cast<std::size_t>(skip - head.skipped); i < head.lines.size(); ++i) {
     if (!open && trimmed(head.lines[i]).empty()) continue;
-    if (!open) rows.push_back({static_cast<std::int64_t>(i) + 1, {}});
+    if (!open) rows.push_back({head.skipped + static_cast<std::int64_t>(i) + 1, {}});
     open = !reader.add(head.lines[i]);
     if (!open) rows.back().fields.assign(reader.fields().begin(), reader.fields().end());
   }
@@ -272,7 +280,7 @@ bool is_rule(const Row& row) {
 
 /// Vernier's text format has three rows above the scans: names, symbols, units.
 bool is_vernier(const Head& head, const Reading& reading) {
-  return head.lines.front().starts_with("Vernier Format") && reading.first >= 3 &&
+  return head.first.starts_with("Vernier Format") && reading.first >= 3 &&
          is_heading(reading.rows[reading.first - 3], reading.dialect);
 }
 
@@ -379,7 +387,7 @@ void find_heading(Reading& reading, const Head& head) {
   std::vector<std::string> names = blanks ? names_between_blanks(rows[heading].fields) : rows[heading].fields;
   if (numbers_rows(reading, names)) names.insert(names.begin(), std::string{});
   if (blanks && names.size() != dialect.columns.size())
-    names = names_between_wide_blanks(head.lines[static_cast<std::size_t>(rows[heading].line) - 1]);
+    names = names_between_wide_blanks(head.line(rows[heading].line));
   // A name with a blank in it shifts those behind it: no name is better than a wrong one.
   if (blanks && names.size() != dialect.columns.size()) {
     dialect.unclear_heading_line = rows[heading].line;
@@ -396,6 +404,26 @@ void find_heading(Reading& reading, const Head& head) {
   }
 }
 
+/// Further rows of the heading: of text in a numeric column, and without a number. Rules and holes are none.
+void keep_rows_below_heading(Reading& reading) {
+  constexpr std::size_t kMost = 4;
+  Dialect& dialect = reading.dialect;
+  for (std::size_t i = 0; i < reading.first && dialect.header_line > 0; ++i) {
+    const Row& row = reading.rows[i];
+    if (row.line <= dialect.header_line || dialect.rows_below_heading.size() == kMost) continue;
+    bool any_text = false;
+    bool any_number = false;
+    for (std::size_t c = 0; c < row.fields.size(); ++c) {
+      const CellKind kind = read_cell(row.fields[c], dialect.decimal).kind;
+      any_text = any_text || (kind == CellKind::kText && c < dialect.numeric.size() && dialect.numeric[c]);
+      any_number = any_number || kind == CellKind::kNumber;
+    }
+    if (!any_text || any_number) continue;
+    std::vector<std::string>& fields = dialect.rows_below_heading.emplace_back();
+    for (const std::string& field : row.fields) fields.emplace_back(trimmed(field));
+  }
+}
+
 std::optional<Reading> read_as(const Head& head, char separator, char decimal, std::int64_t skip) {
   Reading reading;
   reading.dialect.encoding = head.encoding;
@@ -404,12 +432,7 @@ std::optional<Reading> read_as(const Head& head, char separator, char decimal, s
   reading.rows = rows_of(head, separator, skip);
   if (!find_columns(reading) || !find_first_row(reading)) return std::nullopt;
   find_heading(reading, head);
-  for (std::size_t i = 0; i < reading.first && reading.dialect.header_line > 0; ++i) {
-    if (reading.rows[i].line <= reading.dialect.header_line || is_scans(reading.rows[i], reading.dialect))
-      continue;
-    auto& fields = reading.dialect.rows_below_heading.emplace_back();
-    for (const std::string& field : reading.rows[i].fields) fields.emplace_back(trimmed(field));
-  }
+  keep_rows_below_heading(reading);
   return reading;
 }
 
@@ -477,7 +500,7 @@ bool equal(const Reading& a, const Reading& b) {
 bool heading_says_commas(const Reading& commas, const Head& head) {
   const std::int64_t line = commas.dialect.header_line;
   if (commas.dialect.separator != ',' || line == 0 || commas.dialect.columns.size() < 2) return false;
-  return head.lines[static_cast<std::size_t>(line) - 1].find(", ") == std::string::npos;
+  return head.line(line).find(", ") == std::string::npos;
 }
 
 /// Names in the row above the scans, where the rows have twice as many fields, none with a point and each
@@ -596,9 +619,12 @@ base::Result<Dialect> recognise(const Source& source, const DialectOptions& opti
   if (*numbers) return dialect_of_numbers(*std::move(numbers), path, options);
   auto head = read_head(source, options);
   if (!head) return tl::unexpected(head.error());
+  if (head->lines.empty() && head->skipped > 0)
+    return base::usage_error("{}: has {} lines, and --skip {} leaves none: give a smaller one", path,
+                             head->skipped, options.skip);
   if (head->lines.empty()) return base::usage_error("{}: is empty: a table of numbers is needed", path);
   DialectOptions stated = options;
-  if (const std::string_view first = head->lines.front(); first.starts_with("sep=") && first.size() == 5) {
+  if (const std::string_view first = head->first; first.starts_with("sep=") && first.size() == 5) {
     if (!stated.separator) stated.separator = first.back();
     stated.skip = std::max<std::int64_t>(stated.skip, 1);
   }
@@ -622,7 +648,8 @@ base::Result<Dialect> recognise(const Source& source, const DialectOptions& opti
   if (readings.empty()) {
     // Words may stand above the table.
     const auto& lines = head->lines;
-    const auto skipped = lines.begin() + std::min<std::ptrdiff_t>(stated.skip, std::ssize(lines));
+    const auto skipped =
+        lines.begin() + std::min<std::ptrdiff_t>(stated.skip - head->skipped, std::ssize(lines));
     auto sample = std::find_if(skipped, lines.end(), [](const std::string& line) {
       return !is_no_row(line) && line.find_first_of("0123456789") != std::string::npos;
     });
@@ -631,7 +658,7 @@ base::Result<Dialect> recognise(const Source& source, const DialectOptions& opti
         "{}:{}: no table of numbers is found in its first {} lines; this one cannot be read: \"{}\". "
         "State what you see, --encoding, --separator, --decimal, --skip, or export the trace as a table of "
         "text (CSV)",
-        path, sample - lines.begin() + 1, lines.size(), base::one_line(*sample, 60));
+        path, head->skipped + (sample - lines.begin()) + 1, lines.size(), base::one_line(*sample, 60));
   }
   const std::size_t fewest =
       std::min_element(readings.begin(), readings.end(), [](const Reading& a, const Reading& b) {
@@ -663,8 +690,8 @@ base::Result<Dialect> recognise(const Source& source, const DialectOptions& opti
     const std::int64_t line = one.rows[i].line;
     return base::usage_error(
         "{}:{}: \"{}\" has two readings: {} ({}), or {} ({}). Give the option that is right", path, line,
-        base::one_line(head->lines[static_cast<std::size_t>(line) - 1], 40), shown(one, i),
-        option_of(one, other), shown(other, j), option_of(other, one));
+        base::one_line(head->line(line), 40), shown(one, i), option_of(one, other), shown(other, j),
+        option_of(other, one));
   }
   const std::size_t names = names_with_decimal_commas(readings.front());
   if (names > 0 && !stated.separator && !stated.decimal) {
@@ -673,9 +700,8 @@ base::Result<Dialect> recognise(const Source& source, const DialectOptions& opti
         "{}:{}: \"{}\" has two readings: {} columns, or {} with decimal commas, as the {} names above them "
         "say. Give --separator comma for {} columns; else export the file with semicolons between the "
         "columns",
-        path, one.dialect.first_row_line,
-        base::one_line(head->lines[static_cast<std::size_t>(one.dialect.first_row_line) - 1], 40), 2 * names,
-        names, names, 2 * names);
+        path, one.dialect.first_row_line, base::one_line(head->line(one.dialect.first_row_line), 40),
+        2 * names, names, names, 2 * names);
   }
   if (auto clear = refuse_other_mark(readings.front(), path); !clear) return tl::unexpected(clear.error());
   readings.front().dialect.decimal_is_stated = options.decimal.has_value();

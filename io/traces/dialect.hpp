@@ -37,7 +37,7 @@ struct Dialect {
   char decimal = '.';
   std::int64_t header_line = 0;  ///< From 1; 0: the file has no heading.
   std::int64_t units_line = 0;   ///< Of a row of units below it; 0: none.
-  /// Fields of the rows of text between the heading and the first row, without blanks at their ends.
+  /// Fields of further rows of the heading, four at most, without blanks at their ends.
   std::vector<std::vector<std::string>> rows_below_heading;
   std::int64_t first_row_line = 0;
   std::int64_t unclear_heading_line = 0;  ///< Of a heading whose names cannot be told apart; 0: none.

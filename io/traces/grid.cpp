@@ -327,7 +327,8 @@ Continued continued(base::LongColumn<double> column, double first, bool counts,
       before = now;
       whole.column.push_back(now - first + static_cast<double>(whole.starts) * wrap);
     }
-    return whole;
+    if (whole.starts > 0) return whole;
+    break;
   }
   return {std::move(column)};
 }

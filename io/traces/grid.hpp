@@ -55,15 +55,14 @@ using Place = std::function<std::string(std::size_t row)>;
 /// Whether most rows rise or fall by the same whole number, as in a column that counts scans.
 [[nodiscard]] bool is_count(const RowView& column);
 
-/// A column of numbers that only rise.
 struct Continued {
   base::LongColumn<double> column;
-  double end = 0.0;        ///< Where it starts again: 2^8, 2^16, 2^24 or 2^32; 0: nowhere.
-  std::size_t starts = 0;  ///< How often it starts again.
+  double end = 0.0;        ///< Where it started again: 2^8, 2^16, 2^24 or 2^32; 0: nowhere.
+  std::size_t starts = 0;  ///< How often it did.
 };
 
-/// The column, continued where its whole numbers start again at 2^16, 2^24 or 2^32, as counters do.
-/// \param first  what was subtracted from the column. \param counts  2^8 is looked for too.
+/// The column, continued where its whole numbers start again at 2^16, 2^24 or 2^32, as counters do; else as
+/// it was. \param first  what was subtracted from the column. \param counts  2^8 is looked for too.
 [[nodiscard]] Continued continued(base::LongColumn<double> column, double first, bool counts,
                                   const std::filesystem::path& scratch_folder);
 

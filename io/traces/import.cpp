@@ -161,8 +161,12 @@ class Importer {
     if (!table) return tl::unexpected(table.error());
     table_ = std::move(*table);
     row_count_ = table_.value.size();
-    if (columns_.time && table_.time_decimals <= 0 && !table_.time_in_seconds)
-      table_.time = continue_counter(std::move(table_.time), table_.first_time, *columns_.time);
+    Continued counter;
+    if (columns_.time && table_.time_decimals <= 0 && !table_.time_in_seconds) {
+      counter = continued(std::move(table_.time), table_.first_time, columns_.counts_scans,
+                          request_.scratch_folder);
+      table_.time = std::move(counter.column);
+    }
     if (columns_.counts_scans && !is_count(RowView{table_.time, 0.0, 1.0, false})) {
       note("column \"{}\" is not read: it does not count the rows",
            base::one_line(dialect_.columns[*columns_.time].text, 40));
@@ -191,6 +195,7 @@ class Importer {
     several_runs_ = runs.size() > 1;
     if (several_runs_)
       note("{} runs: the clock starts again in {} {}", runs.size(), row_word(), line(runs[1]));
+    if (columns_.time) tell_starts(counter, *columns_.time);
     for (std::size_t i = 0; i < runs.size(); ++i) {
       const std::size_t end = i + 1 < runs.size() ? runs[i + 1] : row_count_;
       if (auto added = add_run(runs[i], end); !added) return tl::unexpected(added.error());
@@ -387,20 +392,15 @@ class Importer {
     });
   }
 
-  /// By continued(): runs of as many rows cannot be told from a counter that starts again.
-  base::LongColumn<double> continue_counter(base::LongColumn<double> values, double first,
-                                            std::size_t column) {
-    const bool counts = column != columns_.time || columns_.counts_scans;
-    Continued whole = continued(std::move(values), first, counts, request_.scratch_folder);
-    if (whole.starts > 0) {
-      note(
-          "column \"{}\" starts again after {:.0f}, {} time{}, as a counter of {:.0f} bits does: the rows go "
-          "on as one "
-          "run. If each start is that of a run, put each into a file of its own",
-          base::one_line(dialect_.columns[column].text, 40), whole.end - 1.0, whole.starts,
-          whole.starts == 1 ? "" : "s", std::log2(whole.end));
-    }
-    return std::move(whole.column);
+  /// Runs of as many rows cannot be told from a counter that starts again.
+  void tell_starts(const Continued& counter, std::size_t column) {
+    if (counter.starts == 0 || several_runs_) return;
+    note(
+        "column \"{}\" starts again after {:.0f}, {} time{}, as a counter of {:.0f} bits does: the rows go "
+        "on as "
+        "one run. If each start is that of a run, put each into a file of its own",
+        base::one_line(dialect_.columns[column].text, 40), counter.end - 1.0, counter.starts,
+        counter.starts == 1 ? "" : "s", std::log2(counter.end));
   }
 
   /// Indices of a column that counts the scans, which a coarse clock does not tell. \return false if there
@@ -408,14 +408,14 @@ class Importer {
   bool count_scans(Grid& grid, std::size_t begin, std::size_t count) {
     const auto column = counter_column_of(dialect_, columns_.value);
     if (!column || column == columns_.time) return false;
-    if (counter_.empty() && counter_was_read_) return false;
-    if (counter_.empty()) {
+    if (counter_.column.empty() && counter_was_read_) return false;
+    if (counter_.column.empty()) {
       counter_was_read_ = true;
       auto table = read_table(source_, dialect_, columns_.value, column, request_.scratch_folder);
       if (!table || table->time.size() != row_count_) return false;
-      counter_ = continue_counter(std::move(table->time), table->first_time, *column);
+      counter_ = continued(std::move(table->time), table->first_time, true, request_.scratch_folder);
     }
-    const RowView rows = RowView{counter_, 0.0, 1.0, request_.reverse}.part(begin, count);
+    const RowView rows = RowView{counter_.column, 0.0, 1.0, request_.reverse}.part(begin, count);
     if (!is_count(rows)) return false;
     GridOptions options;
     options.rate_Hz = 1.0;
@@ -425,6 +425,7 @@ class Importer {
     if (!counted || std::as_const(counted->index).back() < std::as_const(grid.index).back()) return false;
     grid.index = std::move(counted->index);
     note("column \"{}\" counts the scans", base::one_line(dialect_.columns[*column].text, 40));
+    tell_starts(counter_, *column);
     return true;
   }
 
@@ -519,7 +520,7 @@ class Importer {
   TraceTable table_;
   bool counter_was_read_ = false;
   bool several_runs_ = false;
-  base::LongColumn<double> counter_;  ///< Of the scans, beside a coarse clock; else empty.
+  Continued counter_;  ///< Of the scans, beside a coarse clock; else empty.
   std::size_t row_count_ = 0;
   RowView value_;   ///< In board.quantity.
   RowView time_s_;  ///< Empty without a column of times.

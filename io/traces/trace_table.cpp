@@ -141,7 +141,9 @@ class TableReader {
         dialect_(dialect),
         value_column_(value_column),
         time_column_(time_column),
-        table_(scratch_folder) {}
+        table_(scratch_folder) {
+    for (const ColumnName& column : dialect.columns) folded_names_.push_back(folded(column.name));
+  }
 
   base::Result<TraceTable> read() {
     auto file = TextFile::open(source_, dialect_.encoding);
@@ -235,8 +237,7 @@ class TableReader {
       const std::string_view text = trimmed(field(fields, c));
       // Nearly every row is told by the first byte.
       same = same && folds_alike(text, dialect_.columns[c].text) && is_same(column_name(text), c);
-      units = units && (text.empty() || (is_unit(text) && mean_the_same(column_name("", text).unit,
-                                                                        dialect_.columns[c].unit)));
+      units = units && (text.empty() || (is_unit(text) && is_same_unit(column_name("", text).unit, c)));
     }
     if (same) return Again::kHeading;
     const auto is_it = [&fields](const std::vector<std::string>& row) {
@@ -251,19 +252,32 @@ class TableReader {
   /// False only of texts that differ when folded, by their first byte.
   static bool folds_alike(std::string_view one, std::string_view other) {
     if (one.empty() || other.empty()) return one.empty() == other.empty();
+    const auto begins_number = [](char c) {
+      return (c >= '0' && c <= '9') || c == '-' || c == '+' || c == '.';
+    };
     const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c; };
     const auto is_ascii = [](char c) { return static_cast<unsigned char>(c) < 0x80U; };
+    if (begins_number(one.front()) != begins_number(other.front())) return false;
     return lower(one.front()) == lower(other.front()) || !is_ascii(one.front()) || !is_ascii(other.front());
   }
 
   /// Whether a heading names this column, with the unit that the first heading has in this row, or that the
-  /// column has.
+  /// column has. Names of other columns that differ in case alone are told by it.
   [[nodiscard]] bool is_same(const ColumnName& name, std::size_t column) const {
     if (column >= dialect_.columns.size()) return false;
     const ColumnName& own = dialect_.columns[column];
-    return name.text == own.text ||
-           (folded(name.name) == folded(own.name) &&
-            (name.unit == column_name(own.text).unit || mean_the_same(name.unit, own.unit)));
+    if (name.text == own.text) return true;
+    const std::string& form = folded_names_[column];
+    return folded(name.name) == form &&
+           (name.unit == column_name(own.text).unit || mean_the_same(name.unit, own.unit)) &&
+           std::count(folded_names_.begin(), folded_names_.end(), form) == 1;
+  }
+
+  /// "1" may be a value of the column.
+  [[nodiscard]] bool is_same_unit(const std::string& unit, std::size_t column) const {
+    if (column >= dialect_.columns.size()) return false;
+    return unit == dialect_.columns[column].unit ||
+           (unit != "1" && mean_the_same(unit, dialect_.columns[column].unit));
   }
 
   /// What differs in a row of words that is another heading, as it has a name of the first one or units
@@ -286,10 +300,7 @@ class TableReader {
                 return !name.name.empty() && folded(column.name) == folded(name.name);
               });
       if (!other_name && !is_same(name, c)) other_name = c;
-      if (!other_unit && !text.empty() &&
-          (c >= dialect_.columns.size() ||
-           !mean_the_same(column_name("", text).unit, dialect_.columns[c].unit)))
-        other_unit = c;
+      if (!other_unit && !text.empty() && !is_same_unit(column_name("", text).unit, c)) other_unit = c;
     }
     const auto other = units ? other_unit : other_name;
     if (!(units || named) || !other) return {};
@@ -450,6 +461,9 @@ class TableReader {
       any_value_ = true;
     }
     below_heading_ = false;
+    if (time && !time->unclear_date.empty()) {
+      if (auto clear = check_date(*time, line); !clear) return clear;
+    }
     note_label(fields);
     add(hole ? base::kNaN : value.value, time, line);
     // The last number of the line, which would be cut first.
@@ -479,6 +493,27 @@ class TableReader {
     time.value *= time_unit_s_;
     time.decimals -= static_cast<int>(std::ceil(std::log10(time_unit_s_) - 1e-9));
     return true;
+  }
+
+  /// A date that changes while the clock goes on: a day or more is lost, and how many is not known.
+  base::Result<void> check_date(const TimeCell& time, std::int64_t line) {
+    const std::string_view date = time.unclear_date;
+    if (unclear_date_.empty()) {
+      table_.notes.push_back(
+          fmt::format("dates such as {} are not read, as it is not known which part is the day: "
+                      "the clock alone counts",
+                      base::one_line(date, kLongestShown)));
+    } else if (date != unclear_date_ && time.value > last_clock_s_) {
+      return base::usage_error(
+          "{}:{}: {}: the date {} becomes {} while the clock goes on, and which part of it is the day is not "
+          "known: "
+          "write dates as 2026-11-25, or give --time-column none and --rate HZ if the scans are evenly "
+          "spaced",
+          path_, line, column_shown(*time_column_), base::one_line(unclear_date_, kLongestShown),
+          base::one_line(date, kLongestShown));
+    }
+    unclear_date_ = date;
+    return {};
   }
 
   /// "0.123" above "6,944" in one column: 6944 or 6.944, nobody can tell.
@@ -561,6 +596,7 @@ class TableReader {
   const Dialect& dialect_;
   std::size_t value_column_;
   std::optional<std::size_t> time_column_;
+  std::vector<std::string> folded_names_;  ///< Of the columns.
   TraceTable table_;
   std::size_t strange_rows_ = 0;  ///< That are no scans, since the last scan.
   std::int64_t strange_line_ = 0;
@@ -582,6 +618,7 @@ class TableReader {
   std::size_t labelled_ = 0;                ///< Rows with a label since the last one without.
   std::vector<std::size_t> label_columns_;  ///< Their columns.
   std::set<std::size_t> event_columns_;     ///< That have words above those rows.
+  std::string unclear_date_;                ///< TimeCell::unclear_date of the last row.
   double last_clock_s_ = 0.0;
   double midnights_s_ = 0.0;
   std::size_t file_rows_ = 0;

@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "io/traces/column_name.hpp"
-
 namespace stickslip::traces {
 namespace {
 
@@ -42,8 +40,9 @@ char take_half(std::string_view& clock) {
   return half;
 }
 
-/// "12:00:01.5", "00:01.5", "01:00:01.5 PM", "12:00:01:500"
-std::optional<TimeCell> read_clock(std::string_view text, char decimal) {
+/// "12:00:01.5", "00:01.5", "01:00:01.5 PM", "12:00:01:500" \param has_date  beside a date "12:30" is in
+/// hours.
+std::optional<TimeCell> read_clock(std::string_view text, char decimal, bool has_date) {
   const char half = take_half(text);
   auto parts = split(text, ':');
   // Two digits would be frames.
@@ -76,16 +75,24 @@ std::optional<TimeCell> read_clock(std::string_view text, char decimal) {
     time.value += (time.value >= kHalf_s ? -kHalf_s : 0.0) + (half == 'P' ? kHalf_s : 0.0);
   }
   time.decimals = thousandths ? 3 : seconds.decimals;
+  if (has_date && parts.size() == 2 && time.decimals <= 0) time.value *= 60.0;
   return time;
 }
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// 1 of "Jan" or "January"; 0 of other words.
 int month_of(std::string_view word) {
   constexpr std::array<std::string_view, 12> kMonths{"january",   "february", "march",    "april",
                                                      "may",       "june",     "july",     "august",
                                                      "september", "october",  "november", "december"};
-  const std::string name = folded(word);
-  const auto is_it = [&name](std::string_view month) { return name.size() >= 3 && month.starts_with(name); };
+  constexpr std::size_t kShortest = 3;
+  if (word.size() < kShortest || is_digit(word.front())) return 0;
+  const auto is_it = [word](std::string_view month) {
+    return word.size() <= month.size() &&
+           std::equal(word.begin(), word.end(), month.begin(),
+                      [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
+  };
   const auto found = std::find_if(kMonths.begin(), kMonths.end(), is_it);
   return found == kMonths.end() ? 0 : static_cast<int>(found - kMonths.begin()) + 1;
 }
@@ -104,7 +111,10 @@ std::optional<std::int64_t> read_date(std::string_view text) {
   const auto year = whole(parts[0]);
   const auto month = word > 0 ? std::optional{word} : whole(parts[1]);
   const auto day = whole(parts[2]);
-  if (!year || !month || !day) return std::nullopt;
+  constexpr int kLastMonth = 12;
+  constexpr int kLastDay = 31;
+  // The calendar keeps eight bits of each.
+  if (!year || !month || !day || *month > kLastMonth || *day > kLastDay) return std::nullopt;
   const std::chrono::year_month_day date{std::chrono::year{*year},
                                          std::chrono::month{static_cast<unsigned>(*month)},
                                          std::chrono::day{static_cast<unsigned>(*day)}};
@@ -119,9 +129,18 @@ bool is_unclear_date(std::string_view text) {
   const std::size_t mark = text.find_first_of("/.-");
   if (mark == std::string_view::npos) return false;
   const auto parts = split(text, text[mark]);
-  return parts.size() == 3 && parts[0].size() <= 2 && (text[mark] == '/' || parts[2].size() == 2) &&
-         std::all_of(parts.begin(), parts.end(),
-                     [](std::string_view part) { return whole(part).has_value(); });
+  constexpr std::size_t kParts = 3;
+  if (parts.size() != kParts || parts[0].size() > 2 || (text[mark] != '/' && parts[2].size() != 2))
+    return false;
+  int months = 0;
+  int days = 0;
+  for (const std::string_view part : parts) {
+    const auto number = whole(part);
+    if (!number) return false;
+    months += *number >= 1 && *number <= 12 ? 1 : 0;
+    days += *number >= 1 && *number <= 31 ? 1 : 0;
+  }
+  return months >= 1 && days >= 2;
 }
 
 /// Takes "Z", "+01:00" or nothing from the end. \return the offset in s; nothing if it is no offset.
@@ -149,13 +168,19 @@ std::optional<TimeCell> read_moment(std::string_view text, char decimal) {
   const std::size_t between = text.find_last_of("T ", colon);
   if (colon == std::string_view::npos || between == std::string_view::npos || between > colon)
     return std::nullopt;
-  const auto date = read_date(text.substr(0, between));
-  if (!date && is_unclear_date(text.substr(0, between)))
-    return read_clock(trimmed(text.substr(between + 1)), decimal);
+  std::string_view day = trimmed(text.substr(0, between));
+  if (day.size() > 1 && day.back() == 'T' && is_digit(day[day.size() - 2]))
+    day = trimmed(day.substr(0, day.size() - 1));
+  const auto date = read_date(day);
   std::string_view clock = trimmed(text.substr(between + 1));
+  if (!date && is_unclear_date(day)) {
+    auto time = read_clock(clock, decimal, true);
+    if (time) time->unclear_date = day;
+    return time;
+  }
   const auto offset = take_offset(clock);
   if (!date || !offset) return std::nullopt;
-  auto time = read_clock(clock, decimal);
+  auto time = read_clock(clock, decimal, true);
   if (time) time->date_s = *date - *offset;
   return time;
 }
@@ -175,7 +200,7 @@ std::optional<TimeCell> read_time_cell(std::string_view text, const Cell& cell, 
     return time;
   }
   if (auto time = read_moment(text, decimal)) return time;
-  return read_clock(text, decimal);
+  return read_clock(text, decimal, false);
 }
 
 }  // namespace stickslip::traces

@@ -18,12 +18,15 @@ struct TimeCell {
   /// UTC.
   std::optional<std::int64_t> date_s;
   bool in_seconds = false;  ///< "00:01:02.5" and dates have their unit in them.
+  /// Of the cell's text: a date that is not read, "11/25/2026" or "25.11.26", as its parts could be one
+  /// another.
+  std::string_view unclear_date{};
 };
 
 /// A number, "hh:mm:ss.fff", "hh:mm:ss:fff", "mm:ss.f", "hh:mm:ss PM", or a date and time of ISO 8601
 /// ("2026-11-25T12:00:00.5Z"), with points ("25.11.2026 12:00:00") or an English month ("25-Nov-2026
-/// 12:00:00"). Of a date whose day and month, or day and year, cannot be told apart ("11/25/2026",
-/// "26-11-25"), the clock alone counts. \return nothing for other text.
+/// 12:00:00"). Of a date with slashes that has its year last, and of one in numbers with a year of two
+/// digits, the clock alone counts: TimeCell::unclear_date. \return nothing for other text.
 [[nodiscard]] std::optional<TimeCell> read_time_cell(std::string_view text, char decimal);
 /// The same. \param cell  what read_cell() says of the text.
 [[nodiscard]] std::optional<TimeCell> read_time_cell(std::string_view text, const Cell& cell, char decimal);

@@ -96,6 +96,17 @@ TEST_F(TraceImport, HeadingsOrUnitsThatChangeAreRefused) {
   expect_values("t,F\ns,1\n" + rows(0, 25) + "F,peak\n", values(25));
   // Of scans, not of units.
   expect_values("t,F\ns,1\n0,5\n1,1\n2,5\n", {5.0, 1.0, 5.0});
+  request_.unit = "coefficient";
+  request_.rate_Hz = 100.0;
+  expect_values("F\ncoefficient\n0.98\n1\n1.01\n1\n", {0.98, 1.0, 1.01, 1.0});
+  // A rule below the heading is a hole among scans.
+  const auto holes = expect_values("F\n---\n0.1\n0.2\n---\n0.4\n", {0.1, 0.2, 0.4});
+  EXPECT_THAT(holes.scan, ElementsAre(0, 1, 3));
+  request_.rate_Hz.reset();
+  request_.column = "f";
+  expect_refused("t (s),F,f\n0.00,1,2\n0.01,1,2\nt (s),f,F\n0.02,2,1\n",
+                 "another heading, with 'f' in column 2");
+  request_.column = "F";
   // Words that mean the same, and a third row of a heading.
   request_.unit = "N";
   expect_values("t,F\ns,N\n" + rows(0, 25) + "T,f\nsec,Newton\n" + rows(25, 40), values(40));
@@ -500,6 +511,20 @@ TEST_F(TraceImport, TimesOfOtherEpochsAreKnownOrTellNoStart) {
   imported = import(steps);
   ASSERT_TRUE(imported) << imported.error().message;
   EXPECT_THAT(imported->report, HasSubstr("in ms, by inspection: 1000 Hz; --time-unit s would be 1 Hz"));
+}
+
+TEST_F(TraceImport, ADateThatCannotBeReadIsToldAndMayNotChangeUnseen) {
+  std::string content = "Time,F\n";
+  for (int i = 0; i < 60; ++i) content += fmt::format("25.11.26 23:59:{:02},{}\n", i, 1 + i);
+  auto imported = import(content);
+  ASSERT_TRUE(imported) << imported.error().message;
+  EXPECT_THAT(imported->report, HasSubstr("dates such as 25.11.26 are not read"));
+  // At midnight it changes.
+  imported = import(content + "26.11.26 00:00:00,61\n26.11.26 00:00:01,62\n");
+  ASSERT_TRUE(imported) << imported.error().message;
+  EXPECT_EQ(test::in_memory(imported->tests[0]).scan.back(), 61);
+  expect_refused("Time,F\n25.11.26 10:00:00,1\n25.11.26 10:00:01,2\n26.11.26 10:00:02,3\n",
+                 ":4: column 'Time': the date 25.11.26 becomes 26.11.26 while the clock goes on");
 }
 
 TEST_F(TraceImport, TimeOfTheWholeTestIsPreferredToThatOfItsCycles) {
