@@ -422,7 +422,8 @@ class LivePage(unittest.TestCase):
         self.assertTrue(gaps <= told["gap_count"] and lost <= told["lost_scan_count"], (gaps, lost, told["gap_count"], told["lost_scan_count"]))
 
     def test_a_page_that_is_reloaded_in_the_middle_of_a_test_goes_on(self):
-        daemon = self.daemon('[test]\nbegins = "command"\n', speed=2, times=PATIENT)
+        # The second test begins when the pull of the first has ended.
+        daemon = self.daemon('[test]\nbegins = "command"\n', speed=2, times={**PATIENT, "pull": "30 s"})
         frames = self.listen(daemon)
         page = self.page()
         self.start(page)

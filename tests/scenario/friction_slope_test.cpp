@@ -39,7 +39,7 @@ class FrictionSlope : public testing::TestWithParam<double> {
   }
 
   static constexpr int kRepeats = 2;
-  static constexpr int kSeeds = 12;
+  static constexpr int kSeeds = 8;
   test::TemporaryFolder folder_;
 };
 

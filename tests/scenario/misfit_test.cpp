@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/analysis/ladder.hpp"
+#include "tests/support/sample_limits.hpp"
 #include "tests/support/scene_tests.hpp"
 
 namespace stickslip {
@@ -31,7 +32,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Misfit, testing::Values("velocity-weakening", "
 // tests of 100 with friction that falls with speed. The intervals of fit and turning points cover the truth
 // alike.
 TEST_P(Misfit, EachTestHasNumbersThatCoverTheTruth) {
-  constexpr int kTests = 100;
+  constexpr int kTests = 60;
   const auto file =
       std::filesystem::path(STICKSLIP_SOURCE_DIR) / "config/scenes" / (std::string{GetParam()} + ".toml");
   const auto tests = test::analyse_scene(file, kTests);
@@ -55,8 +56,8 @@ TEST_P(Misfit, EachTestHasNumbersThatCoverTheTruth) {
     EXPECT_NE(results.findings.front().text.find("by turning points"), std::string::npos);
   }
   EXPECT_GT(by_turning_points, kTests / 4);
-  EXPECT_GE(covered, 0.93 * kTests);
-  EXPECT_LE(mixed, 5);
+  EXPECT_GE(covered, test::lowest_count(kTests, 0.93));
+  EXPECT_LE(mixed, test::highest_count(kTests, 0.02));
 }
 
 class OtherLaws : public testing::TestWithParam<const char*> {};
