@@ -48,8 +48,8 @@ struct Finding {
 /// The judgement about a file, with what led to it. A member that is unknown is absent or empty.
 struct Verdict {
   Judgement judgement = Judgement::kNotJudged;
-  /// "record" or "journal"; empty if the judgement is kNotJudged, or if the file ended the process that judged
-  /// it.
+  /// "record" or "journal"; empty if the judgement is kNotJudged, or if the file ended the process that
+  /// judged it.
   std::string kind;
   std::optional<std::int64_t> format_version;
   std::optional<std::int64_t> scans_present;  ///< Number of scans that could be read.

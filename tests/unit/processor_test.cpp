@@ -84,8 +84,7 @@ class ProcessorTest : public testing::Test {
   Processor make() { return {settings_, {board_, {}, 1.0}, {&diary_}}; }
 
   static void feed(Processor& processor, daq::ScanIndex first, daq::ScanIndex end,
-                   daq::ScanIndex block_size = 7,
-                   daq::GapCause cause = daq::GapCause::kRingFull) {
+                   daq::ScanIndex block_size = 7, daq::GapCause cause = daq::GapCause::kRingFull) {
     while (first < end) {
       daq::ScanBlock block;
       block.first = first;
