@@ -31,8 +31,6 @@ constexpr std::size_t kLongestHole = 9;
 constexpr std::array<std::string_view, 6> kThousands{" ", kNoBreakSpace, kNarrowSpace, "\xE2\x80\x89",
                                                      "'", "\xE2\x80\x99"};
 
-bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
-
 bool is_hole(std::string_view text) {
   // A number that is wider than its field, in C and Fortran.
   if (text.size() > 1 && text.find_first_not_of('*') == std::string_view::npos) return true;

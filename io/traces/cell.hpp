@@ -30,6 +30,8 @@ struct Cell {
 /// \param decimal  the decimal mark, '.' or ','.
 [[nodiscard]] Cell read_cell(std::string_view text, char decimal);
 
+[[nodiscard]] constexpr bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
+
 /// Without blanks at the ends; those of Unicode count.
 [[nodiscard]] std::string_view trimmed(std::string_view text) noexcept;
 

@@ -252,9 +252,7 @@ class TableReader {
   /// False only of texts that differ when folded, by their first byte.
   static bool folds_alike(std::string_view one, std::string_view other) {
     if (one.empty() || other.empty()) return one.empty() == other.empty();
-    const auto begins_number = [](char c) {
-      return (c >= '0' && c <= '9') || c == '-' || c == '+' || c == '.';
-    };
+    const auto begins_number = [](char c) { return is_digit(c) || c == '-' || c == '+' || c == '.'; };
     const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c; };
     const auto is_ascii = [](char c) { return static_cast<unsigned char>(c) < 0x80U; };
     if (begins_number(one.front()) != begins_number(other.front())) return false;

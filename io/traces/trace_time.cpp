@@ -79,8 +79,6 @@ std::optional<TimeCell> read_clock(std::string_view text, char decimal, bool has
   return time;
 }
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
 /// 1 of "Jan" or "January"; 0 of other words.
 int month_of(std::string_view word) {
   constexpr std::array<std::string_view, 12> kMonths{"january",   "february", "march",    "april",
@@ -129,8 +127,8 @@ bool is_unclear_date(std::string_view text) {
   const std::size_t mark = text.find_first_of("/.-");
   if (mark == std::string_view::npos) return false;
   const auto parts = split(text, text[mark]);
-  constexpr std::size_t kParts = 3;
-  if (parts.size() != kParts || parts[0].size() > 2 || (text[mark] != '/' && parts[2].size() != 2))
+  constexpr std::size_t kDateParts = 3;
+  if (parts.size() != kDateParts || parts[0].size() > 2 || (text[mark] != '/' && parts[2].size() != 2))
     return false;
   int months = 0;
   int days = 0;
