@@ -404,21 +404,14 @@ void find_heading(Reading& reading, const Head& head) {
   }
 }
 
-/// Further rows of the heading: of text in a numeric column, and without a number. Rules and holes are none.
+/// Further rows of the heading: those without a number.
 void keep_rows_below_heading(Reading& reading) {
   constexpr std::size_t kMost = 4;
   Dialect& dialect = reading.dialect;
   for (std::size_t i = 0; i < reading.first && dialect.header_line > 0; ++i) {
     const Row& row = reading.rows[i];
     if (row.line <= dialect.header_line || dialect.rows_below_heading.size() == kMost) continue;
-    bool any_text = false;
-    bool any_number = false;
-    for (std::size_t c = 0; c < row.fields.size(); ++c) {
-      const CellKind kind = read_cell(row.fields[c], dialect.decimal).kind;
-      any_text = any_text || (kind == CellKind::kText && c < dialect.numeric.size() && dialect.numeric[c]);
-      any_number = any_number || kind == CellKind::kNumber;
-    }
-    if (!any_text || any_number) continue;
+    if (has_number(row.fields, dialect.decimal)) continue;
     std::vector<std::string>& fields = dialect.rows_below_heading.emplace_back();
     for (const std::string& field : row.fields) fields.emplace_back(trimmed(field));
   }
@@ -658,7 +651,8 @@ base::Result<Dialect> recognise(const Source& source, const DialectOptions& opti
         "{}:{}: no table of numbers is found in its first {} lines; this one cannot be read: \"{}\". "
         "State what you see, --encoding, --separator, --decimal, --skip, or export the trace as a table of "
         "text (CSV)",
-        path, head->skipped + (sample - lines.begin()) + 1, lines.size(), base::one_line(*sample, 60));
+        path, head->skipped + (sample - lines.begin()) + 1, head->skipped + std::ssize(lines),
+        base::one_line(*sample, 60));
   }
   const std::size_t fewest =
       std::min_element(readings.begin(), readings.end(), [](const Reading& a, const Reading& b) {

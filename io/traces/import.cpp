@@ -394,11 +394,10 @@ class Importer {
 
   /// Runs of as many rows cannot be told from a counter that starts again.
   void tell_starts(const Continued& counter, std::size_t column) {
-    if (counter.starts == 0 || several_runs_) return;
+    if (counter.starts == 0) return;
     note(
         "column \"{}\" starts again after {:.0f}, {} time{}, as a counter of {:.0f} bits does: the rows go "
-        "on as "
-        "one run. If each start is that of a run, put each into a file of its own",
+        "on there. If each start is that of a run, put each into a file of its own",
         base::one_line(dialect_.columns[column].text, 40), counter.end - 1.0, counter.starts,
         counter.starts == 1 ? "" : "s", std::log2(counter.end));
   }

@@ -24,6 +24,7 @@ namespace stickslip::traces {
 namespace {
 
 constexpr std::size_t kLongestShown = 40;
+constexpr double kDay_s = 86'400.0;
 
 /// The best of the columns by `rank`, and of equal ones the nearest before `column`, else the first after it.
 template <typename Rank>
@@ -240,16 +241,21 @@ class TableReader {
       units = units && (text.empty() || (is_unit(text) && is_same_unit(column_name("", text).unit, c)));
     }
     if (same) return Again::kHeading;
+    // A row of scans may look like units, "1", and one of holes like a rule: right below a heading they are
+    // none.
+    const bool has_text = std::any_of(cells_.begin(), cells_.end(),
+                                      [](const Cell& cell) { return cell.kind == CellKind::kText; });
+    if (units && (below_heading_ || has_text)) return Again::kOnlyUnits;
     const auto is_it = [&fields](const std::vector<std::string>& row) {
       return std::equal(row.begin(), row.end(), fields.begin(), fields.end(),
                         [](const std::string& one, std::string_view other) { return one == trimmed(other); });
     };
-    const bool again =
-        units || std::any_of(dialect_.rows_below_heading.begin(), dialect_.rows_below_heading.end(), is_it);
+    const bool again = below_heading_ && std::any_of(dialect_.rows_below_heading.begin(),
+                                                     dialect_.rows_below_heading.end(), is_it);
     return again ? Again::kOnlyUnits : Again::kNo;
   }
 
-  /// False only of texts that differ when folded, by their first byte.
+  /// False only of texts that differ when folded, by their first byte; full-width digits count as no digits.
   static bool folds_alike(std::string_view one, std::string_view other) {
     if (one.empty() || other.empty()) return one.empty() == other.empty();
     const auto begins_number = [](char c) { return is_digit(c) || c == '-' || c == '+' || c == '.'; };
@@ -271,11 +277,8 @@ class TableReader {
            std::count(folded_names_.begin(), folded_names_.end(), form) == 1;
   }
 
-  /// "1" may be a value of the column.
   [[nodiscard]] bool is_same_unit(const std::string& unit, std::size_t column) const {
-    if (column >= dialect_.columns.size()) return false;
-    return unit == dialect_.columns[column].unit ||
-           (unit != "1" && mean_the_same(unit, dialect_.columns[column].unit));
+    return column < dialect_.columns.size() && mean_the_same(unit, dialect_.columns[column].unit);
   }
 
   /// What differs in a row of words that is another heading, as it has a name of the first one or units
@@ -459,9 +462,7 @@ class TableReader {
       any_value_ = true;
     }
     below_heading_ = false;
-    if (time && !time->unclear_date.empty()) {
-      if (auto clear = check_date(*time, line); !clear) return clear;
-    }
+    if (time && !time->unclear_date.empty()) note_date(*time, line);
     note_label(fields);
     add(hole ? base::kNaN : value.value, time, line);
     // The last number of the line, which would be cut first.
@@ -493,25 +494,22 @@ class TableReader {
     return true;
   }
 
-  /// A date that changes while the clock goes on: a day or more is lost, and how many is not known.
-  base::Result<void> check_date(const TimeCell& time, std::int64_t line) {
+  /// Tells that dates are not read, and where one changes though the clock does not pass midnight.
+  void note_date(const TimeCell& time, std::int64_t line) {
     const std::string_view date = time.unclear_date;
     if (unclear_date_.empty()) {
       table_.notes.push_back(
-          fmt::format("dates such as {} are not read, as it is not known which part is the day: "
-                      "the clock alone counts",
+          fmt::format("dates such as {} are not read, as the order of day, month and year is not "
+                      "known: the clock alone counts",
                       base::one_line(date, kLongestShown)));
-    } else if (date != unclear_date_ && time.value > last_clock_s_) {
-      return base::usage_error(
-          "{}:{}: {}: the date {} becomes {} while the clock goes on, and which part of it is the day is not "
-          "known: "
-          "write dates as 2026-11-25, or give --time-column none and --rate HZ if the scans are evenly "
-          "spaced",
-          path_, line, column_shown(*time_column_), base::one_line(unclear_date_, kLongestShown),
-          base::one_line(date, kLongestShown));
+    } else if (date != unclear_date_ && !date_change_is_told_ && last_clock_s_ - time.value < 0.5 * kDay_s) {
+      date_change_is_told_ = true;
+      table_.notes.push_back(fmt::format(
+          "line {}: the date becomes {} where the clock does not pass midnight: days that lie between are "
+          "not counted; dates as 2026-11-25 are",
+          line, base::one_line(date, kLongestShown)));
     }
     unclear_date_ = date;
-    return {};
   }
 
   /// "0.123" above "6,944" in one column: 6944 or 6.944, nobody can tell.
@@ -539,7 +537,6 @@ class TableReader {
         table_.date_s = time->date_s;
         table_.time_in_seconds = time->in_seconds || table_.time_unit_in_cells;
       }
-      constexpr double kDay_s = 86'400.0;
       // A clock without a date that goes back by more than half a day has passed midnight.
       if (time->in_seconds && !time->date_s && last_clock_s_ - time->value > 0.5 * kDay_s)
         midnights_s_ += kDay_s;

@@ -40,9 +40,8 @@ char take_half(std::string_view& clock) {
   return half;
 }
 
-/// "12:00:01.5", "00:01.5", "01:00:01.5 PM", "12:00:01:500" \param has_date  beside a date "12:30" is in
-/// hours.
-std::optional<TimeCell> read_clock(std::string_view text, char decimal, bool has_date) {
+/// "12:00:01.5", "00:01.5", "01:00:01.5 PM", "12:00:01:500"
+std::optional<TimeCell> read_clock(std::string_view text, char decimal) {
   const char half = take_half(text);
   auto parts = split(text, ':');
   // Two digits would be frames.
@@ -75,7 +74,6 @@ std::optional<TimeCell> read_clock(std::string_view text, char decimal, bool has
     time.value += (time.value >= kHalf_s ? -kHalf_s : 0.0) + (half == 'P' ? kHalf_s : 0.0);
   }
   time.decimals = thousandths ? 3 : seconds.decimals;
-  if (has_date && parts.size() == 2 && time.decimals <= 0) time.value *= 60.0;
   return time;
 }
 
@@ -121,8 +119,8 @@ std::optional<std::int64_t> read_date(std::string_view text) {
       .count();
 }
 
-/// "11/25/2026" or "25/11/2026", "25.11.26" or "26-11-25": which part is the month, or the year, is not
-/// known.
+/// "11/25/2026" or "25/11/2026", "25.11.26" or "26-11-25": the order of day, month and year is not known. Of
+/// a clock that was never set they are 0.
 bool is_unclear_date(std::string_view text) {
   const std::size_t mark = text.find_first_of("/.-");
   if (mark == std::string_view::npos) return false;
@@ -135,8 +133,8 @@ bool is_unclear_date(std::string_view text) {
   for (const std::string_view part : parts) {
     const auto number = whole(part);
     if (!number) return false;
-    months += *number >= 1 && *number <= 12 ? 1 : 0;
-    days += *number >= 1 && *number <= 31 ? 1 : 0;
+    months += *number <= 12 ? 1 : 0;
+    days += *number <= 31 ? 1 : 0;
   }
   return months >= 1 && days >= 2;
 }
@@ -172,13 +170,13 @@ std::optional<TimeCell> read_moment(std::string_view text, char decimal) {
   const auto date = read_date(day);
   std::string_view clock = trimmed(text.substr(between + 1));
   if (!date && is_unclear_date(day)) {
-    auto time = read_clock(clock, decimal, true);
+    auto time = read_clock(clock, decimal);
     if (time) time->unclear_date = day;
     return time;
   }
   const auto offset = take_offset(clock);
   if (!date || !offset) return std::nullopt;
-  auto time = read_clock(clock, decimal, true);
+  auto time = read_clock(clock, decimal);
   if (time) time->date_s = *date - *offset;
   return time;
 }
@@ -198,7 +196,7 @@ std::optional<TimeCell> read_time_cell(std::string_view text, const Cell& cell, 
     return time;
   }
   if (auto time = read_moment(text, decimal)) return time;
-  return read_clock(text, decimal, false);
+  return read_clock(text, decimal);
 }
 
 }  // namespace stickslip::traces

@@ -18,8 +18,8 @@ struct TimeCell {
   /// UTC.
   std::optional<std::int64_t> date_s;
   bool in_seconds = false;  ///< "00:01:02.5" and dates have their unit in them.
-  /// Of the cell's text: a date that is not read, "11/25/2026" or "25.11.26", as its parts could be one
-  /// another.
+  /// Of the cell's text: a date that is not read, "11/25/2026" or "25.11.26", as the order of its parts
+  /// is not known.
   std::string_view unclear_date{};
 };
 

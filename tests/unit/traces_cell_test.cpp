@@ -118,13 +118,11 @@ TEST(TraceCell, DatesWithPointsHaveTheDayFirstAndSlashesTellNoDate) {
     EXPECT_EQ(padded->value, 32400.0) << text;
   }
   EXPECT_EQ(seconds("1/2/2024  1:00:00 PM"), 46800.0);
-  // Beside a date the clock has hours.
-  EXPECT_EQ(seconds("2024-02-01 12:30"), 45000.0);
-  EXPECT_EQ(seconds("12:30"), 750.0);
+  EXPECT_EQ(seconds("1/0/1900 0:00:01"), 1.0);  // Of a clock that was never set.
   EXPECT_EQ(seconds("12:00:00:500"), 43200.5);
   EXPECT_EQ(read_time_cell("12:00:00:500", '.')->decimals, 3);
   for (const char* const text :
-       {"12:00:00:50", "99-99-99 12:00:00", "0/0/0 12:00:00", "2024-268-25 12:00:00", "2024-11-257 12:00:00"})
+       {"12:00:00:50", "99-99-99 12:00:00", "2024-268-25 12:00:00", "2024-11-257 12:00:00"})
     EXPECT_FALSE(read_time_cell(text, '.')) << text;
   for (const char* const text :
        {"31-Feb-2024 12:00:00", "01-Fog-2024 12:00:00", "12 Feb 2024", "12:00:00:1x3"})
