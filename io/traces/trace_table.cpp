@@ -24,7 +24,7 @@ namespace stickslip::traces {
 namespace {
 
 constexpr std::size_t kLongestShown = 40;
-constexpr double kDay_s = 86'400.0;
+constexpr double kWholeDay_s = 86'400.0;
 
 /// The best of the columns by `rank`, and of equal ones the nearest before `column`, else the first after it.
 template <typename Rank>
@@ -502,7 +502,8 @@ class TableReader {
           fmt::format("dates such as {} are not read, as the order of day, month and year is not "
                       "known: the clock alone counts",
                       base::one_line(date, kLongestShown)));
-    } else if (date != unclear_date_ && !date_change_is_told_ && last_clock_s_ - time.value < 0.5 * kDay_s) {
+    } else if (date != unclear_date_ && !date_change_is_told_ &&
+               last_clock_s_ - time.value < 0.5 * kWholeDay_s) {
       date_change_is_told_ = true;
       table_.notes.push_back(fmt::format(
           "line {}: the date becomes {} where the clock does not pass midnight: days that lie between are "
@@ -538,8 +539,8 @@ class TableReader {
         table_.time_in_seconds = time->in_seconds || table_.time_unit_in_cells;
       }
       // A clock without a date that goes back by more than half a day has passed midnight.
-      if (time->in_seconds && !time->date_s && last_clock_s_ - time->value > 0.5 * kDay_s)
-        midnights_s_ += kDay_s;
+      if (time->in_seconds && !time->date_s && last_clock_s_ - time->value > 0.5 * kWholeDay_s)
+        midnights_s_ += kWholeDay_s;
       last_clock_s_ = time->in_seconds ? time->value : 0.0;
       const std::int64_t days = time->date_s && table_.date_s ? *time->date_s - *table_.date_s : 0;
       table_.time.push_back(time->value - table_.first_time + static_cast<double>(days) + midnights_s_);
