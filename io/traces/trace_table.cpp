@@ -615,6 +615,7 @@ class TableReader {
   std::vector<std::size_t> label_columns_;  ///< Their columns.
   std::set<std::size_t> event_columns_;     ///< That have words above those rows.
   std::string unclear_date_;                ///< TimeCell::unclear_date of the last row.
+  bool date_change_is_told_ = false;
   double last_clock_s_ = 0.0;
   double midnights_s_ = 0.0;
   std::size_t file_rows_ = 0;
