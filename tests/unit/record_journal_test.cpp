@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/sanitized.hpp"
 #include "core/record/fields.hpp"
 #include "core/record/journal.hpp"
 #include "core/record/json_codec.hpp"
@@ -69,7 +70,9 @@ TEST(Journal, CutAnywhereKeepsEveryWholeEntry) {
   ASSERT_EQ(sizes.back(), whole.size());
 
   // Cut shorter and shorter: rewriting the file for each size would wait for the disk each time.
-  for (std::size_t size = whole.size(); size-- > 0;) {
+  constexpr std::size_t kStep = base::kSanitized ? 7 : 1;
+  for (std::size_t size = whole.size(); size >= kStep;) {
+    size -= kStep;
     std::filesystem::resize_file(folder / "a.journal", size);
     const auto entries =
         static_cast<std::size_t>(std::upper_bound(sizes.begin(), sizes.end(), size) - sizes.begin());
