@@ -57,7 +57,9 @@ Json latency_to_json(const daq::LatencyHistogram& latency) {
 daq::LatencyHistogram latency_from_json(const Json& object) {
   double largest_s = 0.0;
   decode(object.at("largest"), largest_s);
-  return {object.at("counts").get<daq::LatencyHistogram::Counts>(), largest_s};
+  daq::LatencyHistogram::Counts counts{};
+  for (std::size_t bin = 0; bin < counts.size(); ++bin) decode(object.at("counts").at(bin), counts[bin]);
+  return {counts, largest_s};
 }
 
 analysis::TestResults results_from_json(const Json& object) {

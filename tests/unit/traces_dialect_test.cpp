@@ -192,6 +192,8 @@ TEST_F(TraceDialect, SkipReachesBeyondTheLinesThatAreLookedAt) {
   expect_refused(content, "no table of numbers is found in its first 2000 lines");
   request_.dialect.skip = 2500;
   expect_values(content, {1.0, 2.0, 3.0});
+  request_.dialect.skip = 3000;
+  expect_refused(content, "has 2504 lines, and --skip 3000 leaves none");
 }
 
 TEST_F(TraceDialect, InspectionShowsClockTimes) {

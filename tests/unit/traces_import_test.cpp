@@ -571,6 +571,12 @@ TEST_F(TraceImport, CounterTellsMissingRows) {
   ASSERT_TRUE(imported) << imported.error().message;
   EXPECT_EQ(test::in_memory(imported->tests[0]).scan.back(), 511);
   EXPECT_THAT(imported->report, HasSubstr("starts again after 255, 1 time, as a counter of 8 bits does"));
+  // Beside a coarse clock, too.
+  std::string beside = "#,Time,F\n";
+  for (int i = 0; i < 600; ++i) beside += fmt::format("{},12:00:0{},1\n", i % 256, i / 100);
+  const auto clocked = import(beside);
+  ASSERT_TRUE(clocked) << clocked.error().message;
+  EXPECT_THAT(clocked->report, HasSubstr("starts again after 255, 2 times"));
   // Something else by the same name.
   expect_values("Points,F\n7,1\n7,2\n7,3\n", {1.0, 2.0, 3.0});
   EXPECT_THAT(report_, HasSubstr("does not count the rows"));
