@@ -31,13 +31,13 @@ class TestFit {
 
   /// From the highest rung of the fit that describes the test; if none does, what the fit left. With a
   /// characterised tester γ is the tester's, unless the test alone contradicts it. Sets the trace's drift,
-  /// and takes a stated transducer off its values. Call once. \param not_enough  not empty; called once at
-  /// most, as soon as the fit is likely to need turning points beside it.
+  /// and takes a stated transducer off its values. Call once.
+  /// \param not_enough  not empty; called once at most, as soon as the fit is likely to need turning points.
   [[nodiscard]] TestEstimates estimate(estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
                                        double sigma, const std::function<void()>& not_enough);
   /// μ′ of the paper over that of the characterisation, from the damping that the test alone has; why it has
-  /// no value where estimate() was not called, or found no tester. \param estimates  the ones that the
-  /// results come from.
+  /// no value where estimate() was not called, or found no tester.
+  /// \param estimates  the ones that the results come from.
   [[nodiscard]] Estimate mu_slope(const estimate::Trace& trace, const base::LongColumn<detect::Fall>& slips,
                                   double sigma, const TestEstimates& estimates) const;
   /// By settings.bootstrap, whose count is > 0; without spreads, but with a reason, where no fit describes
