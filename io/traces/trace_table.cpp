@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "io/traces/number_file.hpp"
+#include "io/traces/repeated_heading.hpp"
 #include "io/traces/time_unit.hpp"
 #include "io/traces/trace_time.hpp"
 
@@ -142,9 +143,8 @@ class TableReader {
         dialect_(dialect),
         value_column_(value_column),
         time_column_(time_column),
-        table_(scratch_folder) {
-    for (const ColumnName& column : dialect.columns) folded_names_.push_back(folded(column.name));
-  }
+        heading_(dialect),
+        table_(scratch_folder) {}
 
   base::Result<TraceTable> read() {
     auto file = TextFile::open(source_, dialect_.encoding);
@@ -227,93 +227,6 @@ class TableReader {
                         : fmt::format("column '{}'", base::one_line(text, kLongestShown));
   }
 
-  enum class Again { kNo, kHeading, kOnlyUnits };
-
-  /// Whether this is the heading again, or the row of units.
-  [[nodiscard]] Again heading_again(const std::vector<std::string_view>& fields) const {
-    if (dialect_.header_line == 0) return Again::kNo;
-    bool same = true;
-    bool units = dialect_.units_line > 0;
-    for (std::size_t c = 0; c < dialect_.columns.size() && (same || units); ++c) {
-      const std::string_view text = trimmed(field(fields, c));
-      // Nearly every row is told by the first byte.
-      same = same && folds_alike(text, dialect_.columns[c].text) && is_same(column_name(text), c);
-      units = units && (text.empty() || (is_unit(text) && is_same_unit(column_name("", text).unit, c)));
-    }
-    if (same) return Again::kHeading;
-    // A row of scans may look like units, "1", and one of holes like a rule: right below a heading they are
-    // none.
-    const bool has_text = std::any_of(cells_.begin(), cells_.end(),
-                                      [](const Cell& cell) { return cell.kind == CellKind::kText; });
-    if (units && (below_heading_ || has_text)) return Again::kOnlyUnits;
-    const auto is_it = [&fields](const std::vector<std::string>& row) {
-      return std::equal(row.begin(), row.end(), fields.begin(), fields.end(),
-                        [](const std::string& one, std::string_view other) { return one == trimmed(other); });
-    };
-    const bool again = below_heading_ && std::any_of(dialect_.rows_below_heading.begin(),
-                                                     dialect_.rows_below_heading.end(), is_it);
-    return again ? Again::kOnlyUnits : Again::kNo;
-  }
-
-  /// False only of texts that differ when folded, by their first byte; full-width digits count as no digits.
-  static bool folds_alike(std::string_view one, std::string_view other) {
-    if (one.empty() || other.empty()) return one.empty() == other.empty();
-    const auto begins_number = [](char c) { return is_digit(c) || c == '-' || c == '+' || c == '.'; };
-    const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c; };
-    const auto is_ascii = [](char c) { return static_cast<unsigned char>(c) < 0x80U; };
-    if (begins_number(one.front()) != begins_number(other.front())) return false;
-    return lower(one.front()) == lower(other.front()) || !is_ascii(one.front()) || !is_ascii(other.front());
-  }
-
-  /// Whether a heading names this column, with the unit that the first heading has in this row, or that the
-  /// column has. Names of other columns that differ in case alone are told by it.
-  [[nodiscard]] bool is_same(const ColumnName& name, std::size_t column) const {
-    if (column >= dialect_.columns.size()) return false;
-    const ColumnName& own = dialect_.columns[column];
-    if (name.text == own.text) return true;
-    const std::string& form = folded_names_[column];
-    return folded(name.name) == form &&
-           (name.unit == column_name(own.text).unit || mean_the_same(name.unit, own.unit)) &&
-           std::count(folded_names_.begin(), folded_names_.end(), form) == 1;
-  }
-
-  [[nodiscard]] bool is_same_unit(const std::string& unit, std::size_t column) const {
-    return column < dialect_.columns.size() && mean_the_same(unit, dialect_.columns[column].unit);
-  }
-
-  /// What differs in a row of words that is another heading, as it has a name of the first one or units
-  /// alone; empty of other rows.
-  [[nodiscard]] std::string change_of_heading(const std::vector<std::string_view>& fields) const {
-    // Between blanks a name may be several fields.
-    if (dialect_.header_line == 0 ||
-        (dialect_.separator == kBlanks && fields.size() != dialect_.columns.size()))
-      return {};
-    bool units = dialect_.units_line > 0;
-    bool named = false;
-    std::optional<std::size_t> other_name;
-    std::optional<std::size_t> other_unit;
-    for (std::size_t c = 0; c < fields.size(); ++c) {
-      const std::string_view text = trimmed(fields[c]);
-      if (read_cell(text, dialect_.decimal).kind == CellKind::kNumber) return {};
-      units = units && (text.empty() || is_unit(text));
-      const ColumnName name = column_name(text);
-      named = named || std::any_of(dialect_.columns.begin(), dialect_.columns.end(), [&](const auto& column) {
-                return !name.name.empty() && folded(column.name) == folded(name.name);
-              });
-      if (!other_name && !is_same(name, c)) other_name = c;
-      if (!other_unit && !text.empty() && !is_same_unit(column_name("", text).unit, c)) other_unit = c;
-    }
-    const auto other = units ? other_unit : other_name;
-    if (!(units || named) || !other) return {};
-    const std::string before = *other >= dialect_.columns.size() ? std::string{}
-                               : units                           ? dialect_.columns[*other].unit
-                                                                 : dialect_.columns[*other].text;
-    return fmt::format("another {}, with '{}' in column {} where line {} has '{}'",
-                       units ? "row of units" : "heading", base::one_line(fields[*other], kLongestShown),
-                       *other + 1, units ? dialect_.units_line : dialect_.header_line,
-                       base::one_line(before, kLongestShown));
-  }
-
   /// All rows to the end of the file, or to an error.
   base::Result<void> take_rows_of(RowSplitter& splitter) {
     // Rows are split one piece after the other, some pieces ahead; meanwhile cells of those before are read,
@@ -392,7 +305,8 @@ class TableReader {
     if (std::all_of(fields.begin(), fields.end(),
                     [](std::string_view text) { return trimmed(text).empty(); }))
       return {};
-    if (const Again again = heading_again(fields); again != Again::kNo) {
+    using Again = RepeatedHeading::Again;
+    if (const Again again = heading_.again(fields, cells_, below_heading_); again != Again::kNo) {
       // Another table of the same kind begins; what stands between the two is no scan. Units alone do not
       // tell what the columns are.
       below_heading_ = below_heading_ || again == Again::kHeading;
@@ -421,7 +335,7 @@ class TableReader {
                          return read_cell(text, dialect_.decimal).kind == CellKind::kNumber;
                        });
       }
-      if (other_heading_line_ == 0) other_heading_ = change_of_heading(fields);
+      if (other_heading_line_ == 0) other_heading_ = heading_.change(fields);
       if (other_heading_line_ == 0 && !other_heading_.empty()) {
         other_heading_line_ = line;
         below_heading_ = false;
@@ -592,7 +506,7 @@ class TableReader {
   const Dialect& dialect_;
   std::size_t value_column_;
   std::optional<std::size_t> time_column_;
-  std::vector<std::string> folded_names_;  ///< Of the columns.
+  RepeatedHeading heading_;
   TraceTable table_;
   std::size_t strange_rows_ = 0;  ///< That are no scans, since the last scan.
   std::int64_t strange_line_ = 0;
