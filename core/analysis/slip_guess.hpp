@@ -21,8 +21,8 @@ namespace stickslip::analysis {
 [[nodiscard]] double level_before(const estimate::Trace& trace, const detect::Fall& fall);
 
 /// Stick rate at the largest belt speed, 1/s: median slope of the rises, each between 30 and 70 % of its
-/// height, where the sled sticks if it does at all. A rise is left out if the belt does not pull half way; if
-/// all are, the slope of the first rise counts as it is.
+/// height, where the sled sticks if it does at all. A rise is left out if the belt does not pull at the
+/// middle of its time; if all are, the slope of the first rise counts as it is.
 /// \param slips  not empty.
 [[nodiscard]] double slope_of_sticks(const estimate::Trace& trace, std::span<const detect::Fall> slips);
 

@@ -21,9 +21,10 @@ void judge_journal(const std::filesystem::path& path, Verdict& verdict);
 
 // For records.
 
-/// Reads every data set under `file` to locate damage, but for texts and arrays of variable length: those in
-/// chunks chunk by chunk, others as a whole. A chunk that is not stored is damage, and so is what would be
-/// more than 256 MiB to read at once. After 100 damaged chunks of a data set the rest of it is not read.
+/// Reads every data set under `file` to locate damage: those in chunks chunk by chunk, others as a whole. It
+/// skips data sets whose elements have a variable length, be they texts or arrays. A chunk that is not stored
+/// is damage, and so is what would be more than 256 MiB to read at once. After 100 damaged chunks of a data
+/// set the rest of it is not read.
 void judge_chunks(hid_t file, Verdict& verdict);
 /// Judges the rows of raw: order of the scans, jumps without a gap, values that the board cannot give, and
 /// what is computed from other columns (time, force, flag of saturation, second channel). If there is a scan,
